@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Set-up: checks, order in space, blocks, links.
+#include "solver.hpp"
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <sstream>
+#include <unordered_map>
+
+namespace mca::automata {
+namespace {
+	/// Sort key: strips of 16 diameters, columns of one diameter inside a strip: neighbours stay within a few dozen entries.
+	struct Key {
+		int32_t species;
+		int64_t strip, column;
+		double  y;
+		int32_t id;
+		bool    operator<(const Key& o) const
+		{
+			if (species != o.species) return species < o.species;
+			if (strip != o.strip) return strip < o.strip;
+			if (column != o.column) return column < o.column;
+			return y != o.y ? y < o.y : id < o.id;
+		}
+	};
+	void check(const Automaton& a, size_t nMaterials)
+	{
+		auto refuse = [&](const std::string& what) { throw Error("automaton " + std::to_string(a.id) + ": " + what); };
+		auto number = [](double v) {
+			std::ostringstream s;
+			s << v;
+			return s.str();
+		};
+		for (double v : { a.x, a.y, a.vx, a.vy, a.omega, a.angle, a.mass, a.inertia, a.diameter, a.weight, a.strength })
+			if (!std::isfinite(v)) refuse("position, velocity, mass, inertia, diameter, weight or strength is not finite (" + number(v) + "); give finite numbers.");
+		if (!(a.diameter > 0)) refuse("diameter " + number(a.diameter) + " m must be above zero.");
+		if (!(a.mass > 0)) refuse("mass " + number(a.mass) + " kg/m must be above zero; set state.mass (rho times area).");
+		if (a.freeR && !(a.inertia > 0)) refuse("inertia " + number(a.inertia) + " kg m must be above zero, or block the rotation.");
+		if (!(a.weight > 0 && a.weight <= 2)) refuse("weight " + number(a.weight) + " must be in (0, 2].");
+		if (!(a.eqps >= 0 && std::isfinite(a.eqps))) refuse("plastic strain " + number(a.eqps) + " must be finite and not negative.");
+		if (!(a.strength > 0)) refuse("strength factor " + number(a.strength) + " must be above zero.");
+		if (a.material < 0 || size_t(a.material) >= nMaterials) refuse("unknown material number " + std::to_string(a.material) + ".");
+		if (a.id < 0) refuse("negative number.");
+	}
+}
+
+void Solver::makeBlocks(const std::vector<Automaton>& in)
+{
+	Store& S = store;
+	std::vector<Key> keys;
+	keys.reserve(in.size());
+	for (auto& a : in) {
+		int sp = -1;
+		for (size_t q = 0; q < S.species.size(); q++)
+			if (S.species[q].material == a.material && S.species[q].d == a.diameter) sp = int(q);
+		if (sp < 0) sp = int(S.species.size()), S.species.push_back({ a.material, a.diameter });
+		const double d = a.diameter;
+		keys.push_back({ sp, int64_t(std::floor(a.y / (16. * d))), int64_t(std::floor(a.x / d)), a.y, a.id });
+	}
+	std::vector<int32_t> order(in.size());
+	std::iota(order.begin(), order.end(), 0);
+	std::sort(order.begin(), order.end(), [&](int32_t a, int32_t b) { return keys[a] < keys[b]; });
+	std::vector<int64_t> source; // entry of the input for each lane, -1 = padding
+	for (int32_t q : order) {
+		const int32_t sp = keys[q].species;
+		if (S.blocks.empty() || S.blocks.back().species != sp || S.blocks.back().count == blockSize) {
+			source.resize(S.blocks.size() * blockSize, -1);
+			S.blocks.emplace_back();
+			S.blocks.back().species = sp;
+		}
+		source.push_back(q);
+		S.blocks.back().count++;
+	}
+	source.resize(S.blocks.size() * blockSize, -1);
+	const size_t n = source.size();
+	S.eachArray([&](auto& v) { v.assign(n, {}); });
+	for (auto v : { &S.ex, &S.ey, &S.et, &S.dampX, &S.dampY })
+		v->clear();
+	bool heats = false;
+	for (auto& m : S.materials)
+		heats |= m.eos.mieGrueneisen;
+	if (!heats) S.heat.clear();
+	int32_t maxId = -1;
+	for (auto& a : in)
+		maxId = std::max(maxId, a.id);
+	place.assign(maxId + 1, -1);
+	for (size_t i = 0; i < n; i++) {
+		const Species& sp = S.species[S.blocks[i / blockSize].species];
+		S.diameter[i]     = sp.d;
+		S.J[i] = 1., S.mass[i] = 1., S.inertia[i] = 1., S.invN[i] = 1. / nLinks, S.cell[i] = Lattice<2>::cell(sp.d), S.id[i] = -1, S.strength[i] = 1., S.weight[i] = 1.;
+		S.temperature[i] = S.materials[sp.material].yield.T0;
+		if (source[i] < 0) { // padding sits on its block's first automaton, without links
+			const size_t first = i - i % blockSize;
+			S.x[i] = S.x[first], S.y[i] = S.y[first];
+			continue;
+		}
+		const Automaton& a = in[source[i]];
+		if (place[a.id] >= 0) throw Error("automaton " + std::to_string(a.id) + " is given twice.");
+		place[a.id] = int32_t(i);
+		S.x[i] = a.x, S.y[i] = a.y, S.vx[i] = a.vx, S.vy[i] = a.vy, S.omega[i] = a.omega, S.angle[i] = a.angle;
+		S.mass[i] = a.mass, S.inertia[i] = a.inertia, S.weight[i] = a.weight, S.strength[i] = a.strength, S.eqps[i] = a.eqps;
+		S.ax[i] = a.freeX ? 1. / a.mass : 0., S.ay[i] = a.freeY ? 1. / a.mass : 0., S.ar[i] = a.freeR ? 1. / a.inertia : 0.;
+		S.id[i] = a.id, S.group[i] = a.group;
+		S.cell[i] *= a.weight;
+	}
+}
+
+void Solver::makeLinks(const Solver* old)
+{
+	Store&       S = store;
+	const size_t n = S.size();
+	double       dMax = 0;
+	for (auto& sp : S.species)
+		dMax = std::max(dMax, sp.d);
+	const double size = dMax * options.linkFactor;
+	std::unordered_map<int64_t, std::vector<int32_t>> cells;
+	auto at  = [&](double x) { return int64_t(std::floor(x / size)); };
+	auto key = [](int64_t cx, int64_t cy) { return cx * 4294967291LL + cy; };
+	for (size_t i = 0; i < n; i++)
+		if (S.id[i] >= 0) cells[key(at(S.x[i]), at(S.y[i]))].push_back(int32_t(i));
+	S.neighbour.resize(S.blocks.size() * nLinks * blockSize);
+	for (size_t i = 0; i < n; i++)
+		for (int k = 0; k < nLinks; k++)
+			S.neighbour[linkSlot(i, k)] = int32_t(i);
+	S.s.assign(S.neighbour.size(), 0.);
+	S.tau.assign(S.neighbour.size(), 0.);
+	if (old) inheritLinks(*old);
+	auto              known = [&](size_t i) { return old && old->indexOf(S.id[i]) >= 0; };
+	std::vector<Near> near(n);
+	for (size_t i = 0; i < n; i++) {
+		if (S.id[i] < 0) continue;
+		int found = 0;
+		for (int a = -1; a <= 1; a++)
+			for (int b = -1; b <= 1; b++) {
+				auto it = cells.find(key(at(S.x[i]) + a, at(S.y[i]) + b));
+				if (it == cells.end()) continue;
+				for (int32_t j : it->second) {
+					if (size_t(j) == i || (known(i) && known(j))) continue;
+					const double dx = S.x[j] - S.x[i], dy = S.y[j] - S.y[i], r = std::sqrt(dx * dx + dy * dy), d = 0.5 * (S.diameter[i] + S.diameter[j]);
+					if (r < 0.5 * d) overlapError(i, j, r / d);
+					if (S.group[i] != S.group[j] || r >= options.linkFactor * d) continue;
+					if (found < nLinks) near[i].other[found] = j, near[i].angle[found] = std::atan2(dy, dx);
+					found++;
+				}
+			}
+		if (found > nLinks) {
+			std::ostringstream s;
+			s << "automaton " << S.id[i] << " at (" << S.x[i] << ", " << S.y[i] << ") m has " << found << " neighbours within " << options.linkFactor
+			  << " diameters; the hexagonal packing has at most 6. The spacing of the packing does not match the diameter " << S.diameter[i] << " m: build the packing with this spacing.";
+			throw Error(s.str());
+		}
+		near[i].count = found;
+	}
+	placeLinks(near, old);
+	for (size_t i = 0; i < n; i++)
+		if (S.id[i] >= 0 && (S.flags[i] & linkBits) != linkBits) S.flags[i] |= exposedBit;
+	// half links along weighted rims: both ends are cut cells and the pair borders on one triangle of the lattice only
+	if (!options.fullLinks)
+		for (size_t i = 0; i < n; i++) {
+			if (S.id[i] < 0 || S.weight[i] >= 0.999 || known(i)) continue;
+			double sum = 0;
+			for (int k = 0; k < nLinks; k++) {
+				if (!((S.flags[i] >> k) & 1)) continue;
+				const int32_t j = S.neighbour[linkSlot(i, k)];
+				int           common = 0;
+				for (int a = 0; a < nLinks; a++)
+					for (int b = 0; b < nLinks; b++)
+						common += ((S.flags[i] >> a) & 1) && ((S.flags[j] >> b) & 1) && S.neighbour[linkSlot(i, a)] == S.neighbour[linkSlot(j, b)];
+				const bool half = S.weight[j] < 0.999 && common <= 1;
+				if (half) S.flags[i] |= 1 << (halfShift + k);
+				sum += half ? 0.5 : 1.;
+			}
+			S.invN[i] = 1. / std::max(sum, nLinks * S.weight[i]);
+		}
+}
+
+// Link k points at 60 k degrees in the frame of the packing. The frame is found from one automaton of each linked body and handed on from
+// neighbour to neighbour, so that bodies of any orientation and slightly irregular packings get consistent slots.
+void Solver::placeLinks(const std::vector<Near>& near, const Solver* old)
+{
+	Store&               S     = store;
+	const double         sixth = M_PI / 3.;
+	std::vector<double>  frame(S.size(), 1e9);
+	std::vector<int32_t> queue;
+	// automata that were there before know their frame from the links they have
+	for (size_t i = 0; old && i < S.size(); i++) {
+		double c = 0, s = 0;
+		for (int k = 0; k < nLinks; k++)
+			if ((S.flags[i] >> k) & 1) {
+				const int32_t j = S.neighbour[linkSlot(i, k)];
+				const double  turn = std::atan2(S.y[j] - S.y[i], S.x[j] - S.x[i]) - k * sixth;
+				c += std::cos(turn), s += std::sin(turn);
+			}
+		if (c != 0 || s != 0) frame[i] = std::atan2(s, c);
+	}
+	std::vector<char> done(S.size(), 0);
+	std::vector<int32_t> seeds;
+	for (int pass = 0; pass < 2; pass++) // bodies that go on first
+		for (size_t i = 0; i < S.size(); i++)
+			if (S.id[i] >= 0 && near[i].count > 0 && (frame[i] < 1e8) == (pass == 0)) seeds.push_back(int32_t(i));
+	for (size_t seed : seeds) {
+		if (done[seed]) continue;
+		if (frame[seed] > 1e8) frame[seed] = std::remainder(near[seed].angle[0], sixth);
+		done[seed] = 1;
+		queue.assign(1, int32_t(seed));
+		for (size_t q = 0; q < queue.size(); q++) {
+			const size_t i   = queue[q];
+			double       off = 0;
+			for (int f = 0; f < near[i].count; f++) {
+				const double turn = (near[i].angle[f] - frame[i]) / sixth, slot = std::round(turn);
+				const int    k = ((int(slot) % nLinks) + nLinks) % nLinks;
+				off += turn - slot;
+				if (std::fabs(turn - slot) > 0.42 || ((S.flags[i] >> k) & 1)) {
+					std::ostringstream s;
+					s << "automaton " << S.id[i] << " at (" << S.x[i] << ", " << S.y[i] << ") m: its neighbours do not stand at multiples of 60 degrees (one is off by " << 60. * std::fabs(turn - slot)
+					  << " degrees). Link hexagonal packings of one orientation only; give bodies of another orientation another mask.";
+					throw Error(s.str());
+				}
+				S.neighbour[linkSlot(i, k)] = near[i].other[f];
+				S.flags[i] |= (1 << k) | (1 << (hadShift + k));
+			}
+			frame[i] += sixth * off / near[i].count;
+			for (int f = 0; f < near[i].count; f++) {
+				const int32_t j = near[i].other[f];
+				if (done[j]) continue;
+				if (frame[j] > 1e8) frame[j] = frame[i];
+				done[j] = 1, queue.push_back(j);
+			}
+		}
+	}
+	for (size_t i = 0; i < S.size(); i++)
+		for (int k = 0; k < nLinks; k++)
+			if (((S.flags[i] >> k) & 1) && S.neighbour[linkSlot(S.neighbour[linkSlot(i, k)], (k + 3) % nLinks)] != int32_t(i))
+				throw Error("automata " + std::to_string(S.id[i]) + " and " + std::to_string(S.id[S.neighbour[linkSlot(i, k)]]) + " see each other in directions that do not belong to one hexagonal packing; build the body as one packing.");
+}
+
+void Solver::makeAdjacency()
+{
+	const Store& S = store;
+	adjacentBegin.assign(1, 0);
+	adjacent.clear();
+	for (size_t b = 0; b < S.blocks.size(); b++) {
+		std::vector<int32_t> near;
+		for (int q = 0; q < nLinks * blockSize; q++)
+			near.push_back(S.neighbour[b * nLinks * blockSize + q] / blockSize);
+		std::sort(near.begin(), near.end());
+		near.erase(std::unique(near.begin(), near.end()), near.end());
+		for (int32_t q : near)
+			if (size_t(q) != b) adjacent.push_back(q);
+		adjacentBegin.push_back(int32_t(adjacent.size()));
+	}
+}
+
+void Solver::classify()
+{
+	Store& S = store;
+	for (size_t b = 0; b < S.blocks.size(); b++) {
+		Block& B = S.blocks[b];
+		B.intact = B.count == blockSize;
+		B.mixed  = false;
+		for (int l = 0; l < blockSize; l++) {
+			const int32_t f = S.flags[b * blockSize + l];
+			if ((f & linkBits) != linkBits || (f & halfBits)) B.intact = false;
+			for (int k = 0; k < nLinks; k++)
+				if ((f >> k) & 1) B.mixed |= S.speciesOf(S.neighbour[(b * nLinks + k) * blockSize + l]) != B.species;
+		}
+	}
+}
+
+void Solver::build(const std::vector<Automaton>& automata, const std::vector<Material>& materials, const Options& o, const Solver* old)
+{
+	for (auto& a : automata)
+		check(a, materials.size());
+	options         = o;
+	store           = Store();
+	contacts        = Contacts();
+	scratch         = ContactScratch();
+	counters        = Counters();
+	sums            = Account();
+	store.materials = materials;
+	tied.clear(), tiedVx.clear(), tiedVy.clear(), tiedW.clear(), exposed.clear(), contactAdjacent.clear();
+	time = lastDt = lastMove = dtLimit = contactSpeed2 = 0, lastSort = 0;
+	unsettled.clear();
+	makeBlocks(automata);
+	makeLinks(old);
+	makeAdjacency();
+	classify();
+	Store& S = store;
+	results.assign(S.blocks.size(), {});
+	works.assign(S.blocks.size(), {});
+	S.packAll();
+	for (size_t b = 0; b < S.blocks.size(); b++)
+		densityPass(S, b, options.volumeRule, {}, true, results[b]);
+	if (old) return inheritState(*old);
+	// automata that enter with a plastic history keep it; nothing else is stressed
+	for (auto& B : S.blocks)
+		B.awake = !options.sleeping, B.moving = false;
+	for (size_t i = 0; i < S.size(); i++)
+		if (S.vx[i] != 0 || S.vy[i] != 0 || S.omega[i] != 0) S.blocks[i / blockSize].moving = true;
+	topologyChanged = true;
+	sums.kineticStart = 0;
+	sums.kineticStart = account().kinetic;
+	if (options.contacts) search();
+	wake();
+}
+}

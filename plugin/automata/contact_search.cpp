@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "contacts.hpp"
+#include <algorithm>
+#include <cmath>
+#include <omp.h>
+
+namespace mca::automata {
+namespace {
+	/// Uniform grid of cells over the exposed automata; a list per cell by counting sort.
+	struct CellGrid {
+		double               x0 = 0, y0 = 0, inv = 0;
+		int                  nx = 1, ny = 1;
+		std::vector<int32_t> begin, item;
+		CellGrid(const Store& S, const std::vector<int32_t>& who, double size)
+		{
+			double x1 = -1e300, y1 = -1e300;
+			x0 = y0 = 1e300;
+			for (int32_t i : who)
+				x0 = std::min(x0, S.x[i]), y0 = std::min(y0, S.y[i]), x1 = std::max(x1, S.x[i]), y1 = std::max(y1, S.y[i]);
+			// debris far away must not make the grid larger than the list that it serves
+			const double most = 8. * double(who.size()) + 1024.;
+			while (((x1 - x0) / size + 1) * ((y1 - y0) / size + 1) > most)
+				size *= 1.25;
+			inv = 1. / size;
+			nx = int((x1 - x0) * inv) + 1, ny = int((y1 - y0) * inv) + 1;
+			begin.assign(size_t(nx) * ny + 1, 0);
+			for (int32_t i : who)
+				begin[cellOf(S, i) + 1]++;
+			for (size_t c = 1; c < begin.size(); c++)
+				begin[c] += begin[c - 1];
+			item.resize(who.size());
+			std::vector<int32_t> at(begin.begin(), begin.end() - 1);
+			for (int32_t i : who)
+				item[at[cellOf(S, i)]++] = i;
+		}
+		int    column(double x) const { return std::max(0, std::min(int((x - x0) * inv), nx - 1)); }
+		int    row(double y) const { return std::max(0, std::min(int((y - y0) * inv), ny - 1)); }
+		size_t cellOf(const Store& S, int32_t i) const { return size_t(row(S.y[i])) * nx + column(S.x[i]); }
+	};
+	bool linked(const Store& S, int32_t i, int32_t j)
+	{
+		for (int k = 0; k < nLinks; k++)
+			if (((S.flags[i] >> k) & 1) && S.neighbour[linkSlot(i, k)] == j) return true;
+		return false;
+	}
+	/// An exposed automaton i touches an interior one j, too, when it is no part of j's body: debris (links that span no volume) or another group.
+	/// Both may come through a rim that has been stretched. Automata of one body keep to their links there.
+	bool foreign(const Store& S, int32_t i, int32_t j) { return __builtin_popcount(S.flags[i] & linkBits) < 3 || S.group[i] != S.group[j]; }
+	bool exposed(const Store& S, int32_t i) { return S.flags[i] & exposedBit; }
+	bool mayTouch(const Store& S, int32_t i, int32_t j) { return exposed(S, i) ? exposed(S, j) || foreign(S, i, j) : exposed(S, j) && foreign(S, j, i); }
+	double reach2(const Store& S, int32_t i, int32_t j, double skin) { return sqr(0.5 * (S.diameter[i] + S.diameter[j]) * (1. + skin)); }
+	double distance2(const Store& S, int32_t i, int32_t j) { return sqr(S.x[j] - S.x[i]) + sqr(S.y[j] - S.y[i]); }
+	/// Calls f(j) for all automata of the grid in the nine cells around i, until it returns true.
+	template <class F> void around(const Store& S, const CellGrid& grid, int32_t i, F&& f)
+	{
+		const int cx = grid.column(S.x[i]), cy = grid.row(S.y[i]);
+		for (int y = std::max(cy - 1, 0); y <= std::min(cy + 1, grid.ny - 1); y++) {
+			const size_t first = size_t(y) * grid.nx + std::max(cx - 1, 0), last = size_t(y) * grid.nx + std::min(cx + 1, grid.nx - 1);
+			for (int32_t p = grid.begin[first]; p < grid.begin[last + 1]; p++)
+				if (f(grid.item[p])) return;
+		}
+	}
+	/// Adds to `who` the interior automata that something foreign is about to reach, in the order of the arrays.
+	void addReached(const Store& S, std::vector<int32_t>& who, double size, double skin, int threads)
+	{
+		const CellGrid                    grid(S, who, size);
+		std::vector<std::vector<int32_t>> parts(threads);
+		const long                        nb = long(S.blocks.size());
+		const double                      x1 = grid.x0 + (grid.nx + 1) / grid.inv, y1 = grid.y0 + (grid.ny + 1) / grid.inv, margin = 1. / grid.inv;
+#pragma omp parallel for schedule(static, 1) num_threads(threads)
+		for (int t = 0; t < threads; t++)
+			for (long b = nb * t / threads; b < nb * (t + 1) / threads; b++)
+				for (int l = 0; l < S.blocks[b].count; l++) {
+					const int32_t i = int32_t(b * blockSize + l);
+					if (exposed(S, i) || S.x[i] < grid.x0 - margin || S.y[i] < grid.y0 - margin || S.x[i] > x1 || S.y[i] > y1) continue;
+					around(S, grid, i, [&](int32_t j) {
+						if (!foreign(S, j, i) || !(distance2(S, i, j) < reach2(S, i, j, skin))) return false;
+						parts[t].push_back(i);
+						return true;
+					});
+				}
+		const size_t middle = who.size();
+		for (auto& p : parts)
+			who.insert(who.end(), p.begin(), p.end());
+		std::inplace_merge(who.begin(), who.begin() + middle, who.end());
+	}
+	/// stress of a pair before: an old contact, or a link that has just broken
+	void carryOver(const Store& S, const Contacts& old, const std::vector<int32_t>& oldRow, int32_t i, int32_t j, double& s, double& tau, double& rest)
+	{
+		if (!oldRow.empty() && oldRow[i] >= 0)
+			for (int32_t c = old.rowBegin[oldRow[i]]; c < old.rowBegin[oldRow[i] + 1]; c++)
+				if (old.other[c] == j) {
+					s = old.s[c], tau = old.tau[c], rest = old.rest[c];
+					return;
+				}
+		for (int k = 0; k < nLinks; k++)
+			if (((S.flags[i] >> (hadShift + k)) & 1) && !((S.flags[i] >> k) & 1) && S.neighbour[linkSlot(i, k)] == j) s = S.s[linkSlot(i, k)], tau = S.tau[linkSlot(i, k)];
+	}
+	void constants(const Store& S, Contacts& C, size_t c)
+	{
+		const int32_t   i = C.owner[c], j = C.other[c], a = S.speciesOf(i), b = S.speciesOf(j);
+		const Material &m = S.materials[S.species[a].material], &o = S.materials[S.species[b].material];
+		const double    di = S.diameter[i], dj = S.diameter[j];
+		C.d[c]        = 0.5 * (di + dj);
+		// surfaces meet at d; a pair that is found closer (its link broke, or its automata have just become a surface) starts without push
+		C.rest[c]     = std::min(C.d[c], std::sqrt(sqr(S.x[j] - S.x[i]) + sqr(S.y[j] - S.y[i])));
+		C.share[c]    = di / (di + dj);
+		C.twoG[c]     = S.pairTwoG(a, j, C.share[c]);
+		C.friction[c] = std::min(m.friction, o.friction);
+		S.pairViscosity(a, j, C.viscLinear[c], C.viscQuadratic[c]);
+	}
+}
+
+void searchContacts(Store& S, Contacts& C, double skin, int threads)
+{
+	std::vector<int32_t> who;
+	for (size_t b = 0; b < S.blocks.size(); b++)
+		for (int l = 0; l < S.blocks[b].count; l++)
+			if (S.flags[b * blockSize + l] & exposedBit) who.push_back(int32_t(b * blockSize + l));
+	for (auto& b : S.blocks)
+		b.contact = false;
+	Contacts old;
+	std::swap(old, C);
+	C.rowBegin.assign(1, 0);
+	if (who.empty()) return;
+	double dMax = 0;
+	for (auto& sp : S.species)
+		dMax = std::max(dMax, sp.d);
+	const double cell = dMax * (1. + skin);
+	addReached(S, who, cell, skin, threads);
+	const CellGrid       grid(S, who, cell);
+	std::vector<int32_t> oldRow;
+	if (old.rows()) {
+		oldRow.assign(S.size(), -1);
+		for (size_t r = 0; r < old.rows(); r++)
+			oldRow[old.rowOwner[r]] = int32_t(r);
+	}
+	struct Part {
+		std::vector<int32_t> owner, other, rowOwner, rowSize;
+	};
+	std::vector<Part> parts(threads);
+	const long        n = long(who.size());
+#pragma omp parallel for schedule(static, 1) num_threads(threads)
+	for (int t = 0; t < threads; t++) {
+		Part&                P = parts[t];
+		std::vector<int32_t> row;
+		for (long q = n * t / threads; q < n * (t + 1) / threads; q++) {
+			const int32_t i  = who[q];
+			row.clear();
+			around(S, grid, i, [&](int32_t j) {
+				if (j != i && mayTouch(S, i, j) && distance2(S, i, j) < reach2(S, i, j, skin) && !linked(S, i, j)) row.push_back(j);
+				return false;
+			});
+			if (row.empty()) continue;
+			std::sort(row.begin(), row.end(), [&](int32_t a, int32_t b) { return S.id[a] < S.id[b]; });
+			P.rowOwner.push_back(i);
+			P.rowSize.push_back(int32_t(row.size()));
+			P.owner.insert(P.owner.end(), row.size(), i);
+			P.other.insert(P.other.end(), row.begin(), row.end());
+		}
+	}
+	for (auto& P : parts) {
+		C.owner.insert(C.owner.end(), P.owner.begin(), P.owner.end());
+		C.other.insert(C.other.end(), P.other.begin(), P.other.end());
+		C.rowOwner.insert(C.rowOwner.end(), P.rowOwner.begin(), P.rowOwner.end());
+		for (int32_t s : P.rowSize)
+			C.rowBegin.push_back(C.rowBegin.back() + s);
+	}
+	const size_t m = C.size();
+	for (auto v : { &C.s, &C.tau, &C.rest, &C.d, &C.twoG, &C.friction, &C.viscLinear, &C.viscQuadratic, &C.share, &C.a, &C.b, &C.c })
+		v->assign(m, 0.);
+	C.reverse.assign(m, 0);
+	std::vector<int32_t> rowOf(S.size(), -1);
+	for (size_t r = 0; r < C.rows(); r++)
+		rowOf[C.rowOwner[r]] = int32_t(r), S.blocks[C.rowOwner[r] / blockSize].contact = true;
+#pragma omp parallel for schedule(static) num_threads(threads)
+	for (long c = 0; c < long(m); c++) {
+		const int32_t j = C.other[c];
+		for (int32_t q = C.rowBegin[rowOf[j]]; q < C.rowBegin[rowOf[j] + 1]; q++)
+			if (C.other[q] == C.owner[c]) C.reverse[c] = q;
+		constants(S, C, c);
+		carryOver(S, old, oldRow, C.owner[c], j, C.s[c], C.tau[c], C.rest[c]);
+	}
+}
+}

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Automata added and erased during a run: those that stay keep their links, stresses, contacts and history.
+#include "solver.hpp"
+#include <algorithm>
+
+namespace mca::automata {
+
+/// Links between automata that the old solver knew, in their old slots; links to erased ones are gone for good.
+void Solver::inheritLinks(const Solver& old)
+{
+	Store&       S = store;
+	const Store& O = old.store;
+	for (size_t i = 0; i < S.size(); i++) {
+		const int64_t o = S.id[i] < 0 ? -1 : old.indexOf(S.id[i]);
+		if (o < 0) continue;
+		S.flags[i] |= O.flags[o] & exposedBit;
+		S.invN[i] = O.invN[o];
+		for (int k = 0; k < nLinks; k++) {
+			const size_t at = linkSlot(i, k), from = linkSlot(o, k);
+			if (!((O.flags[o] >> (hadShift + k)) & 1)) continue;
+			const int64_t j = indexOf(O.id[O.neighbour[from]]);
+			if (j < 0) { // its partner was erased: the slot is free for a new automaton
+				S.flags[i] |= exposedBit;
+				continue;
+			}
+			S.neighbour[at] = int32_t(j), S.s[at] = O.s[from], S.tau[at] = O.tau[from];
+			S.flags[i] |= O.flags[o] & ((1 << k) | (1 << (halfShift + k)) | (1 << (hadShift + k)));
+		}
+	}
+}
+
+void Solver::inheritState(const Solver& old)
+{
+	Store&       S = store;
+	const Store& O = old.store;
+	sums = old.sums, counters = old.counters, time = old.time, lastDt = old.lastDt, lastMove = old.lastMove, lastSort = old.lastSort, dtLimit = old.dtLimit;
+	for (size_t i = 0; i < S.size(); i++) {
+		const int64_t o = S.id[i] < 0 ? -1 : old.indexOf(S.id[i]);
+		if (o < 0) continue;
+		S.J[i] = O.J[o], S.P[i] = O.P[o], S.h[i] = O.h[o], S.szz[i] = O.szz[o], S.eqps[i] = O.eqps[o], S.dTheta[i] = O.dTheta[o];
+		S.temperature[i] = O.temperature[o], S.strength[i] = O.strength[o], S.criterion[i] = O.criterion[o], S.angle[i] = O.angle[o];
+		if (!S.heat.empty() && !O.heat.empty()) S.heat[i] = O.heat[o];
+		bool same = true;
+		for (int k = 0; k < nLinks; k++) {
+			const bool before = (O.flags[o] >> k) & 1, now = (S.flags[i] >> k) & 1;
+			same &= before == now && (!now || S.id[S.neighbour[linkSlot(i, k)]] == O.id[O.neighbour[linkSlot(o, k)]]);
+		}
+		S.rest[i] = O.rest[o], S.jOff[i] = O.jOff[o];
+		if (same) continue;
+		// the volume goes on from where it was (the change over the last step is lost: J was taken before the last move)
+		if (options.volumeRule == VolumeRule::affine && S.jOff[i] == 0.) S.jOff[i] = 1.;
+		if (options.volumeRule == VolumeRule::affine) keepVolume(i);
+		else keepSum(i);
+	}
+	for (int32_t o : old.tied) { // tied ones keep their places in the order of tie()
+		const int64_t i = indexOf(O.id[o]);
+		if (i < 0) throw Error("automaton " + std::to_string(O.id[o]) + " is tied to a grid; it cannot be erased.");
+		S.flags[i] |= tiedBit;
+		S.ax[i] = O.ax[o], S.ay[i] = O.ay[o], S.ar[i] = O.ar[o];
+		tied.push_back(int32_t(i));
+	}
+	tiedVx = old.tiedVx, tiedVy = old.tiedVy, tiedW = old.tiedW;
+	// old contacts bring their stresses along through the search
+	for (size_t r = 0; r < old.contacts.rows(); r++) {
+		const int64_t i = indexOf(O.id[old.contacts.rowOwner[r]]);
+		if (i < 0) continue;
+		const size_t first = contacts.size();
+		for (int32_t c = old.contacts.rowBegin[r]; c < old.contacts.rowBegin[r + 1]; c++) {
+			const int64_t j = indexOf(O.id[old.contacts.other[c]]);
+			if (j < 0) continue;
+			contacts.owner.push_back(int32_t(i)), contacts.other.push_back(int32_t(j));
+			contacts.s.push_back(old.contacts.s[c]), contacts.tau.push_back(old.contacts.tau[c]), contacts.rest.push_back(old.contacts.rest[c]);
+		}
+		if (contacts.size() == first) continue;
+		if (contacts.rowBegin.empty()) contacts.rowBegin.push_back(0);
+		contacts.rowOwner.push_back(int32_t(i)), contacts.rowBegin.push_back(int32_t(contacts.size()));
+	}
+	for (auto& B : S.blocks)
+		B.moving = B.awake = true;
+	topologyChanged = true;
+	sums.kineticStart += account().kinetic - old.account().kinetic; // what joined or left changes the sum, not the balance
+	wake();
+	for (size_t i = 0; i < S.size(); i++)
+		results[i / blockSize].criterion = std::max(results[i / blockSize].criterion, S.flags[i] & linkBits ? S.criterion[i] : 0.);
+	searchDue = true; // the next computeForces() makes the list of contacts whole
+}
+}

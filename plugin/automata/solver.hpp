@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The automata solver: movable cellular automata in plane strain on flat arrays. Knows nothing of YADE.
+//   solver.build(...); loop { solver.computeForces(); solver.integrate(dt); }
+// Leapfrog: positions at whole steps, velocities at half steps. computeForces() gives the forces at the present positions.
+#pragma once
+#include "contacts.hpp"
+#include <string>
+
+namespace mca::automata {
+
+constexpr int breakPeriod = 4; ///< steps between two tests for breaking links
+
+struct Options {
+	VolumeRule volumeRule   = VolumeRule::affine;
+	double     linkFactor   = 1.2;  ///< automata closer than this times their rest distance are linked at build [-]
+	double     skin         = 0.4;  ///< contact search range beyond touching, in rest distances [-]
+	bool       sleeping     = true; ///< leave out blocks that nothing has reached
+	bool       account      = false; ///< keep the energy account
+	bool       contacts     = true; ///< search for contacts
+	bool       fullLinks    = false; ///< keep full weight of links and cells at weighted rims (no half bonds)
+};
+
+/// One automaton as the caller gives it. Plane strain, per unit thickness, SI units.
+struct Automaton {
+	double  x = 0, y = 0, vx = 0, vy = 0, omega = 0, angle = 0;
+	double  mass = 0, inertia = 0, diameter = 0, weight = 1, strength = 1;
+	double  eqps = 0;
+	int32_t material = 0, id = 0, group = 0;
+	bool    freeX = true, freeY = true, freeR = true;
+};
+
+/// Energies [J/m]; independent ones from state functions and each dissipation's own increments, booked ones from forces and velocities.
+struct Account {
+	double kinetic = 0, volumetric = 0, deviatoric = 0;                    ///< now
+	double plastic = 0, viscous = 0, friction = 0, fracture = 0, coupling = 0, boundary = 0; ///< dissipated (coupling: exchanged) since build
+	double external = 0;                                                   ///< work of external forces and driven automata
+	double bookedVolumetric = 0, bookedDeviatoric = 0, bookedViscous = 0;  ///< work of the internal forces
+	double kineticStart = 0, heated = 0; ///< heated: dissipation that stands in the internal energy of Mie-Grueneisen materials
+	double px = 0, py = 0, angular = 0;                                    ///< momentum [N s/m], angular momentum about the origin [N s]
+	double impulseX = 0, impulseY = 0;                                     ///< of external forces, driven and viscous boundaries [N s/m]
+	/// kinetic energy gained minus all work booked: round-off
+	double bookedError() const { return kinetic - kineticStart - bookedVolumetric - bookedDeviatoric - bookedViscous - external + boundary; }
+	/// independent sum now
+	double total() const { return kinetic + volumetric + deviatoric + plastic + viscous + friction + fracture + coupling + boundary - external; }
+};
+
+struct Counters {
+	int64_t steps = 0, searches = 0, blockSteps = 0, brokenLinks = 0, clamped = 0, sorts = 0;
+	double  deepest = 1e300; ///< smallest r/d seen
+	double  nsDensity = 0, nsStress = 0, nsForce = 0, nsContact = 0, nsSearch = 0, nsIntegrate = 0, nsFracture = 0;
+};
+
+class MCA_API Solver {
+public:
+	/// Builds arrays and links. Throws Error: coincident automata, wrong spacing, bad mass, unknown material, non-finite input.
+	/// old: the solver of the set before automata were added or erased; those it knew by the same number keep links, stresses, contacts and history,
+	/// and new links form only with automata that it did not know.
+	void build(const std::vector<Automaton>& automata, const std::vector<Material>& materials, const Options& options, const Solver* old = nullptr);
+
+	/// Forces at the present positions from the last move. Throws Error (deep overlap, non-finite result); positions stay as they are.
+	void computeForces();
+	/// Velocities and positions by dt [s]. Throws Error when dt is not positive.
+	void integrate(double dt);
+	/// Largest stable step after the last computeForces() [s].
+	double criticalStep() const { return dtLimit; }
+
+	/// External force [N/m] and torque [N] of automaton i for the next integrate().
+	void addForce(size_t i, double fx, double fy, double torque);
+	void clearForces();
+	/// Viscous (transmitting) boundary: force -b v, b = rho c A [kg/(m s)] per direction.
+	void setDamping(size_t i, double bx, double by);
+	/// Automaton i is carried by others from now on: it keeps no mass of its own in the sums and moves with the velocity it is told.
+	/// freeSpin: its rotation stays its own. Returns its place t in the order of the calls.
+	size_t tie(size_t i, bool freeSpin = false);
+	void setTiedVelocity(size_t i, double vx, double vy, double omega);
+	/// Time [s] over which the forces of a step of dt act on the velocities: half of the step before and half of this one.
+	double kick(double dt) const { return lastDt > 0 ? 0.5 * (lastDt + dt) : dt; }
+	/// Place of the caller's number in the arrays, or -1. Changes with every sort.
+	int64_t indexOf(int32_t id) const { return id >= 0 && size_t(id) < place.size() ? place[id] : -1; }
+
+	Account  account() const;
+	Options  options;
+	Counters counters;
+	Store    store;
+	Contacts contacts;
+	double   time = 0;
+	/// Links that hold, both ends once: (id, id).
+	std::vector<std::pair<int32_t, int32_t>> links() const;
+	/// After positions or velocities were changed from outside: new contact search, no strain from the change. Call computeForces() before
+	/// changing anything, so that the strain of the last step is not lost.
+	void moved();
+	/// Sum of the volume terms of the contacts of automaton i [-].
+	double contactSum(size_t i) const { return scratch.sum.empty() ? 0. : scratch.sum[i]; }
+	/// Mises stress [Pa].
+	double equivalentStress(size_t i) const;
+	/// The automaton that limits the time step.
+	size_t stiffestAutomaton() const;
+	/// All state as bytes, and back; continuing is bit-identical. load throws Error on damaged data.
+	std::string save() const;
+	void        load(const std::string& bytes);
+	/// The timers of counters run only when asked.
+	bool timing = false;
+
+private:
+	void   makeBlocks(const std::vector<Automaton>& automata);
+	struct Near { ///< automata to be linked to one
+		int     count = 0;
+		int32_t other[nLinks];
+		double  angle[nLinks];
+	};
+	void   makeLinks(const Solver* old);
+	void   placeLinks(const std::vector<Near>& near, const Solver* old);
+	void   inheritLinks(const Solver& old);
+	void   inheritState(const Solver& old);
+	void   makeAdjacency();
+	void   classify();
+	void   sortInSpace();
+	void   searchIfNeeded();
+	void   search();
+	void   wake();
+	void   wakeAround(size_t block);
+	template <class F> void eachBreaking(F&& f) const; ///< f(automaton, link) for pairs that fulfil a criterion, until it returns true
+	bool   breaking() const;
+	void   keepVolume(size_t i);
+	void   keepSum(size_t i);
+	void   breakLinks();
+	void   settleVolumes();
+	void   checkResults(double nearestContact, size_t closest);
+	double stateEnergy(size_t i, double J) const;
+	template <class F> void eachAwake(F&& f);
+	template <class F> void archive(F&& f);
+	[[noreturn]] void       overlapError(size_t i, size_t j, double ratio) const;
+
+	std::vector<int32_t>     place;
+	std::vector<BlockResult> results;
+	std::vector<BlockWork>   works;
+	std::vector<std::vector<double>> partials; ///< of integrate: work per block
+	ContactScratch           scratch;
+	struct {
+		std::vector<double> volX, volY, visX, visY; ///< volumetric and viscous share of the forces of links
+	} accountForce;
+	int64_t                  lastSort = 0;
+	std::vector<int32_t>     unsettled; ///< lost its links in the present search: contacts must take over its volume
+	std::vector<double>      searchX, searchY; ///< positions of exposed automata at the last search
+	std::vector<int32_t>     exposed;
+	std::vector<int32_t>     adjacentBegin, adjacent; ///< blocks next to a block by links
+	std::vector<std::pair<int32_t, int32_t>> contactAdjacent;
+	std::vector<int32_t>     awake;
+	std::vector<int32_t>     tied;
+	std::vector<double>      tiedVx, tiedVy, tiedW; ///< velocity before the present step
+	double                   lastDt = 0, lastMove = 0, dtLimit = 0, contactSpeed2 = 0;
+	bool                     topologyChanged = true; ///< the list of awake blocks is out of date
+	bool                     searchDue       = false;
+	Account                  sums;
+};
+}

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+# The Debian package: `cmake --build build --target package` (or `cpack -G DEB` in the build folder) makes build/yade-mca_VERSION_amd64.deb.
+# Only for the stock package of YADE; nothing of YADE is replaced, plain `yade` never loads it.
+set(debian "${MCA_PLUGIN_DIR}/debian")
+set(python lib/python3/dist-packages)
+
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/pyscripts/yade_mca" DESTINATION ${python} PATTERN "__pycache__" EXCLUDE PATTERN "*.pyc" EXCLUDE)
+install(PROGRAMS "${PROJECT_SOURCE_DIR}/pyscripts/yade-mca" "${PROJECT_SOURCE_DIR}/pyscripts/yade-mca-batch" DESTINATION bin)
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/pyscripts/examples" DESTINATION share/yade-mca FILES_MATCHING PATTERN "*.py" PATTERN "*.table" PATTERN "__pycache__" EXCLUDE)
+install(DIRECTORY "${MCA_LIB_DIR}/" DESTINATION ${python}/yade_mca/lib FILES_MATCHING PATTERN "*.so")
+install(FILES "${debian}/copyright" DESTINATION share/doc/yade-mca)
+# strip, no search path outside the package, sizes and checksums of what is installed, compressed pages
+install(
+	CODE "file(RPATH_CHANGE FILE \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${python}/yade_mca/lib/_yade_mca.so\" OLD_RPATH \"\\\$ORIGIN:${MCA_YADE_LIBDIR}\" NEW_RPATH \"\\\$ORIGIN\")
+set(root \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}\")
+execute_process(COMMAND /usr/bin/python3 \"${debian}/finish.py\" \"\${root}\" \"${PROJECT_SOURCE_DIR}\" \"${MCA_VERSION}\" \"${MCA_YADE_LIBDIR}\" COMMAND_ERROR_IS_FATAL ANY)")
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME yade-mca)
+set(CPACK_PACKAGE_VERSION "${MCA_VERSION}")
+set(CPACK_PACKAGE_CONTACT "yade-mca maintainers <yade-mca@yade-mca.invalid>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "movable cellular automata with a Lagrangian grid for YADE")
+set(CPACK_PACKAGE_DESCRIPTION
+    "Adds classes to the discrete element code YADE without rebuilding it: metals
+under shock and impact as movable cellular automata (equation of state,
+plasticity, fracture, contact), tied to a Lagrangian finite-difference grid.
+.
+Scripts start with yade-mca in place of yade, or import yade_mca. Plain yade
+is not touched.")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES OFF) # finish.py does it before the checksums are taken
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS
+    "yade (= 2023.02a-1), libyade (= 2023.02a-1), python3 (>= 3.11), python3 (<< 3.12), python3-numpy, python3-scipy, python3-matplotlib, libboost-python1.74.0, libboost-serialization1.74.0, libc6 (>= 2.36), libgcc-s1 (>= 3.0), libgomp1 (>= 6), libpython3.11, libstdc++6 (>= 12)"
+)
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-vtk9, python3-tqdm")
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA "${debian}/postinst;${debian}/prerm")
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+include(CPack)

@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+# The solver library, once per instruction level: same sources, same name, other folder; the dynamic loader takes the highest level the machine has.
+# Never -ffast-math: at link it would switch the whole process to flush denormals. -ffp-contract=off: a fused multiply-add only where written.
+find_package(OpenMP REQUIRED)
+
+set(MCA_SOLVER_FLAGS -O3 -ffp-contract=off -fno-math-errno -fno-trapping-math -fvisibility=hidden -fvisibility-inlines-hidden -Wall -Wextra)
+if(MCA_SANITIZE)
+	list(TRANSFORM MCA_SOLVER_FLAGS REPLACE "^-O3$" "-O1")
+endif()
+
+function(mca_add_solver target level folder)
+	add_library(${target} SHARED ${ARGN})
+	target_include_directories(${target} PUBLIC "${MCA_PLUGIN_DIR}")
+	target_compile_options(${target} PRIVATE ${MCA_SOLVER_FLAGS})
+	if(level)
+		target_compile_options(${target} PRIVATE -march=${level})
+		if(level STREQUAL "x86-64-v4")
+			target_compile_options(${target} PRIVATE -mprefer-vector-width=512)
+		endif()
+	endif()
+	target_link_libraries(${target} PUBLIC OpenMP::OpenMP_CXX)
+	target_link_options(${target} PRIVATE -Wl,-z,defs)
+	set_target_properties(${target} PROPERTIES OUTPUT_NAME mcasolver LIBRARY_OUTPUT_DIRECTORY "${MCA_LIB_DIR}/${folder}")
+endfunction()

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The cell loop of one row: loads, kernels/cell.hpp, stores. One instance per combination of features, so an unused feature costs nothing.
+#pragma once
+#include "sweep.hpp"
+
+namespace mca::grid {
+
+/// flatten: one call left in the loop and nothing vectorises.
+template <YieldKind kind, GridViscosity visc, bool hourglass, bool mieGrueneisen>
+__attribute__((flatten)) uint64_t rowKernel(const Block& b, int j, int lo, int hi, const CellConstants& constants, const RowForces& f)
+{
+	const CellConstants c  = constants;
+	const size_t        n0 = b.node(0, j), n1 = b.node(0, j + 1), c0 = b.cell(0, j);
+	const double* __restrict x0  = b.x + n0;
+	const double* __restrict y0  = b.y + n0;
+	const double* __restrict x1  = b.x + n1;
+	const double* __restrict y1  = b.y + n1;
+	const double* __restrict vx0 = b.vx + n0;
+	const double* __restrict vy0 = b.vy + n0;
+	const double* __restrict vx1 = b.vx + n1;
+	const double* __restrict vy1 = b.vy + n1;
+	const double* __restrict restArea = b.restArea + c0;
+	const double* __restrict energy   = mieGrueneisen ? b.energy + c0 : nullptr;
+	double* __restrict sxx  = b.sxx + c0;
+	double* __restrict syy  = b.syy + c0;
+	double* __restrict sxy  = b.sxy + c0;
+	double* __restrict eqps = b.eqps + c0;
+	double* __restrict rx   = b.rx + c0;
+	double* __restrict ry   = b.ry + c0;
+	double* __restrict temperature = kind == YieldKind::johnsonCook ? b.temperature + c0 : nullptr;
+	double* __restrict t0x = f.t0x;
+	double* __restrict t0y = f.t0y;
+	double* __restrict t1x = f.t1x;
+	double* __restrict t1y = f.t1y;
+	uint64_t worst = 0; // bits of doubles that are not negative sort like the numbers; signs and NaN come out above all of them
+#pragma omp simd reduction(max : worst)
+	for (int i = lo; i < hi; i++) {
+		const CellPattern p = cellPattern(x0[i], y0[i], x0[i + 1], y0[i + 1], x1[i + 1], y1[i + 1], x1[i], y1[i]);
+		const CellPattern v = cellPattern(vx0[i], vy0[i], vx0[i + 1], vy0[i + 1], vx1[i + 1], vy1[i + 1], vx1[i], vy1[i]);
+		CellState         s = { sxx[i], syy[i], sxy[i], 0., 0., 0., 0. };
+		if constexpr (kind != YieldKind::elastic) s.eqps = eqps[i];
+		if constexpr (hourglass) {
+			s.rx = rx[i];
+			s.ry = ry[i];
+		}
+		if constexpr (kind == YieldKind::johnsonCook) s.temperature = temperature[i];
+		double e = 0.;
+		if constexpr (mieGrueneisen) e = energy[i] / restArea[i];
+		const CellForces out = updateCell<kind, visc, hourglass, mieGrueneisen>(c, p, v, restArea[i], e, s);
+		sxx[i] = s.sxx;
+		syy[i] = s.syy;
+		sxy[i] = s.sxy;
+		if constexpr (kind != YieldKind::elastic) eqps[i] = s.eqps;
+		if constexpr (hourglass) {
+			rx[i] = s.rx;
+			ry[i] = s.ry;
+		}
+		if constexpr (kind == YieldKind::johnsonCook) temperature[i] = s.temperature;
+		t0x[i] = out.t0x;
+		t0y[i] = out.t0y;
+		t1x[i] = out.t1x;
+		t1y[i] = out.t1y;
+		const uint64_t rate = uint64_t(bitsOf(out.rate));
+		worst               = rate > worst ? rate : worst;
+	}
+	return worst;
+}
+
+template <YieldKind kind> RowKernel chooseRowKernel(const Block& b)
+{
+	using V       = GridViscosity;
+	const bool v = b.material.viscosity.active() && !b.options.edgeViscosity, h = b.options.hourglass > 0, m = b.material.eos.mieGrueneisen;
+	if (v) {
+		if (h) return m ? rowKernel<kind, V::scalar, true, true> : rowKernel<kind, V::scalar, true, false>;
+		return m ? rowKernel<kind, V::scalar, false, true> : rowKernel<kind, V::scalar, false, false>;
+	}
+	if (h) return m ? rowKernel<kind, V::none, true, true> : rowKernel<kind, V::none, true, false>;
+	return m ? rowKernel<kind, V::none, false, true> : rowKernel<kind, V::none, false, false>;
+}
+}

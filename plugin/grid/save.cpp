@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The whole state of a grid as bytes, and back. One function lists the fields for both directions.
+#include "grid.hpp"
+#include <cstring>
+#include <type_traits>
+
+namespace mca::grid {
+
+namespace {
+	constexpr uint64_t formatVersion = 1;
+
+	struct Writer {
+		static constexpr bool reading = false;
+		std::vector<char>     bytes;
+		void raw(const void* p, size_t n)
+		{
+			const char* c = static_cast<const char*>(p);
+			bytes.insert(bytes.end(), c, c + n);
+		}
+	};
+	struct Reader {
+		static constexpr bool    reading = true;
+		const std::vector<char>& bytes;
+		size_t                   at = 0;
+		void raw(void* p, size_t n)
+		{
+			if (n > bytes.size() - at) throw Error("grid: the saved state is cut short; it cannot be restored.");
+			std::memcpy(p, bytes.data() + at, n);
+			at += n;
+		}
+	};
+
+	template <class A, class T> std::enable_if_t<std::is_arithmetic_v<T> || std::is_enum_v<T>> io(A& a, T& v) { a.raw(&v, sizeof v); }
+	template <class A> void io(A& a, std::string& s)
+	{
+		uint64_t n = s.size();
+		io(a, n);
+		if constexpr (A::reading) s.assign(n, ' ');
+		a.raw(s.data(), n);
+	}
+	template <class A, class T> void io(A& a, std::vector<T>& v);
+	template <class A> void          io(A& a, Table& t) { io(a, t.time), io(a, t.value); }
+	template <class A> void          io(A& a, Range& r) { io(a, r.lo), io(a, r.hi); }
+	template <class A> void          io(A& a, Constraint& c) { io(a, c.node), io(a, c.nx), io(a, c.ny), io(a, c.table); }
+	template <class A> void          io(A& a, NodeLoad& l) { io(a, l.node), io(a, l.tableX), io(a, l.tableY); }
+	template <class A> void          io(A& a, EdgeLoad& l)
+	{
+		io(a, l.kind), io(a, l.a), io(a, l.b), io(a, l.tableX), io(a, l.tableY), io(a, l.restLength), io(a, l.zP), io(a, l.zS), io(a, l.block), io(a, l.i),
+		        io(a, l.j);
+	}
+	template <class A> void io(A& a, Sample& s)
+	{
+		for (double* p : { &s.time, &s.x, &s.y, &s.vx, &s.vy, &s.pressure, &s.sxx, &s.syy, &s.sxy, &s.eqps }) io(a, *p);
+	}
+	template <class A> void io(A& a, Gauge& g)
+	{
+		io(a, g.at.block), io(a, g.at.i), io(a, g.at.j), io(a, g.at.u), io(a, g.at.v), io(a, g.period), io(a, g.history);
+	}
+	template <class A> void io(A& a, Material& m)
+	{
+		io(a, m.eos.rho0), io(a, m.eos.c0), io(a, m.eos.b), io(a, m.eos.gamma0), io(a, m.eos.mieGrueneisen), io(a, m.eos.clampAt), io(a, m.G);
+		Yield& y = m.yield;
+		io(a, y.kind);
+		for (double* p : { &y.A, &y.B, &y.n, &y.C, &y.rate0, &y.m, &y.Tm, &y.T0, &y.heatPerWork }) io(a, *p);
+		Fracture& f = m.fracture;
+		for (double* p : { &f.strain, &f.spall, &f.pairStress, &f.mises, &f.ratio }) io(a, *p);
+		io(a, m.viscosity.linear), io(a, m.viscosity.quadratic), io(a, m.friction);
+	}
+	template <class A, class T> void io(A& a, std::vector<T>& v)
+	{
+		uint64_t n = v.size();
+		io(a, n);
+		if constexpr (A::reading) {
+			if (n > a.bytes.size()) throw Error("grid: the saved state is damaged; it cannot be restored.");
+			v.resize(n);
+		}
+		if constexpr (std::is_arithmetic_v<T>) a.raw(v.data(), n * sizeof(T));
+		else
+			for (T& e : v) io(a, e);
+	}
+	template <class A> void io(A& a, Arena& arena)
+	{
+		for (size_t k = 0; k < arena.arrays(); k++) a.raw(arena.array(k), arena.length() * sizeof(double));
+	}
+	template <class A> void io(A& a, Block& b)
+	{
+		io(a, b.material), io(a, b.options.name), io(a, b.options.hourglass), io(a, b.options.edgeViscosity), io(a, b.account);
+		int ni = b.ni, nj = b.nj;
+		io(a, ni), io(a, nj);
+		if constexpr (A::reading) {
+			if (ni < 1 || nj < 1 || size_t(ni) * size_t(nj) > a.bytes.size()) throw Error("grid: the saved state is damaged; it cannot be restored.");
+			b.allocate(ni, nj);
+		}
+		io(a, b.arena), io(a, b.awake), io(a, b.moving), io(a, b.allAwake), io(a, b.firstCopy), io(a, b.nCopies), io(a, b.interiorOpen),
+		        io(a, b.interiorOpenRowStart), io(a, b.bandWorst);
+	}
+	template <class A> void io(A& a, OpenNodes& o)
+	{
+		for (auto* v : { &o.x, &o.y, &o.vx, &o.vy, &o.mass, &o.addedMass, &o.fx, &o.fy, &o.lx, &o.ly, &o.ex, &o.ey, &o.wx, &o.wy, &o.copyMass, &o.copyVx, &o.copyVy })
+			io(a, *v);
+		for (auto& c : o.corner) io(a, c);
+		io(a, o.copyMaster), io(a, o.copyBlock), io(a, o.copyNode), io(a, o.repeats), io(a, o.firstCopy);
+	}
+}
+
+template <class A> void Boundary::fields(A& a)
+{
+	io(a, tables_), io(a, constraints_), io(a, edgeLoads_), io(a, nodeLoads_);
+	if constexpr (A::reading) indexAll();
+}
+
+template <class A> void Grid::fields(A& a)
+{
+	uint64_t version = formatVersion, count = blocks_.size();
+	io(a, version);
+	if (version != formatVersion)
+		throw Error("grid: the state was saved in format " + std::to_string(version) + ", this version reads format " + std::to_string(formatVersion) + ".");
+	io(a, options_.account), io(a, options_.skip), io(a, options_.safety), io(a, count);
+	if constexpr (A::reading) {
+		if (count > a.bytes.size()) throw Error("grid: the saved state is damaged; it cannot be restored.");
+		blocks_.clear();
+		bands_.clear();
+		for (uint64_t k = 0; k < count; k++) blocks_.push_back(std::make_unique<Block>());
+	}
+	for (auto& b : blocks_) io(a, *b);
+	io(a, open_);
+	boundary_.fields(a);
+	for (double* p : { &account_.loads, &account_.external, &account_.constraints, &account_.viscous, &account_.impulseX, &account_.impulseY, &time_, &dtPrevious_,
+	                   &dtNow_, &restSpeed_, &maxRate_, &restRate_ })
+		io(a, *p);
+	io(a, gauges_), io(a, built_), io(a, between_), io(a, ratesKnown_), io(a, steps_), io(a, failure_);
+}
+
+std::vector<char> Grid::save() const
+{
+	Writer w;
+	const_cast<Grid*>(this)->fields(w); // writing changes nothing
+	return std::move(w.bytes);
+}
+
+void Grid::restore(const std::vector<char>& state)
+{
+	const std::vector<char> before = save();
+	try {
+		Reader r { state };
+		fields(r);
+		if (r.at != state.size()) throw Error("grid: the saved state has " + std::to_string(state.size() - r.at) + " bytes too many; it cannot be restored.");
+	} catch (...) { // a damaged state must not cost the present one
+		Reader r { before };
+		fields(r);
+		throw;
+	}
+}
+}

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Automata as YADE's bodies hold them: the same reading for the fast engine and for the law in YADE's loop.
+#pragma once
+#include "McaMat.hpp"
+#include "automata/solver.hpp"
+#include <core/Body.hpp>
+
+namespace yade {
+class Scene;
+
+/// Material McaMat and shape Sphere.
+bool isAutomaton(const shared_ptr<Body>& b);
+
+/// All automata of the scene, ascending ids. Strengths that are zero are drawn and stored in the states.
+struct McaBodies {
+	vector<mca::automata::Automaton> automata;
+	vector<mca::Material>            materials;
+	vector<const McaMat*>            known; ///< of materials
+	vector<int>                      ids;
+	/// Throws mca::Error: material out of range, no McaState, mass that is not that of plane strain.
+	McaBodies(const Scene& scene, int seed);
+
+private:
+	void add(const Body& b, int seed);
+};
+/// Place of m in known, appended if need be.
+size_t materialIndex(const McaMat* m, vector<const McaMat*>& known, vector<mca::Material>& materials);
+} // namespace yade

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The law of the automata in YADE's own loop: what has to be known of all pairs of an automaton before any pair force can be computed.
+#pragma once
+#include "McaPhys.hpp"
+#include "McaSolverEngine.hpp"
+#include "automata/solver.hpp"
+#include <core/Body.hpp>
+
+namespace yade {
+
+class McaDensity : public McaSolverEngine {
+public:
+	void action() override;
+	Real criticalTimeStep() const override { return dtLimit; }
+	void prepare(Scene* scene) override;
+	void postLoad(McaDensity&) { ready = false; }
+	/// Forces of all pairs to the bodies, in a fixed order; ends the step. Throws mca::Error when one is not finite, before it adds any.
+	void addForces(Scene* scene);
+	py::dict energies();
+	py::dict counters() const;
+	py::list links() const;
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(McaDensity, McaSolverEngine,
+		"First half of the law of movable cellular automata in YADE's loop (plane strain x, y): volume and pressure of every automaton, trial stresses of its pairs, radial return, fracture "
+		"and contact friction, by the same formulas, at the same steps and in the same order as :yref:`McaEngine`, written plainly. O.engines: ForceResetter, collider "
+		"(Bo1_Sphere_Aabb with aabbEnlargeFactor 1.4), McaDensity, InteractionLoop (Ig2_Sphere_Sphere_ScGeom with interactionDetectionFactor 1.4, :yref:`Ip2_McaMat_McaMat_McaPhys`, for walls "
+		":yref:`Ip2_FrictMat_McaMat_McaPhys`, :yref:`Law2_ScGeom_McaPhys_Mca`), :yref:`McaForces`, NewtonIntegrator(damping=0). Bodies closer than linkFactor diameters with the same mask are linked in the "
+		"first step; bodies added later meet as contacts. O.dt is checked against the largest stable step, or set by :yref:`McaTimeStepper`.",
+		((string, volumeRule, "affine", , "'affine', 'inversePower' or 'meanDistance', see McaEngine"))
+		((Real, linkFactor, 1.2, , "bodies closer than this many diameters are linked at the start [-]"))
+		((int, seed, 1, , "seed of the scattered strengths"))
+		((long, steps, 0, Attr::readonly, "steps done"))
+		((Real, dtLimit, std::numeric_limits<Real>::infinity(), Attr::readonly, "largest stable time step at the present state [s]"))
+		((int, stiffest, -1, Attr::readonly, "body that limits the time step"))
+		((Real, lastMove, 0, Attr::readonly, "time step that led to the present positions [s]"))
+		((long, doneAt, -1, Attr::hidden, "O.iter whose stresses are computed: once only, also when something stops the step half-way"))
+		((Real, deepest, 1, Attr::readonly, "smallest distance of a pair over its rest distance seen [-]"))
+		((long, clamped, 0, Attr::readonly, "times the equation of state was beyond its clamp"))
+		((long, brokenLinks, 0, Attr::readonly, "links broken"))
+		((Real, plastic, 0, Attr::readonly, "plastic work so far, while O.trackEnergy [J/m]"))
+		((Real, viscous, 0, Attr::readonly, "heat of the artificial viscosity so far, while O.trackEnergy [J/m]"))
+		((Real, frictional, 0, Attr::readonly, "energy lost in contacts so far, while O.trackEnergy [J/m]"))
+		((Real, fracture, 0, Attr::readonly, "energy released by fracture so far, while O.trackEnergy [J/m]"))
+		((Real, coupling, 0, Attr::readonly, "work of the pair stresses that went into volume so far, while O.trackEnergy [J/m]"))
+		((Real, heated, 0, Attr::readonly, "part of the dissipation that stands in the internal energy of mieGruneisen materials [J/m]"))
+		,
+		/* ctor */
+		,
+		.def("energies", &McaDensity::energies, "Energies [J/m] now, and dissipations since O.trackEnergy was set: 'kinetic', 'volumetric', 'deviatoric', 'plastic', 'viscous', 'friction', 'fracture', 'coupling', 'total'.")
+		.def("counters", &McaDensity::counters, "Work done so far: steps, brokenLinks, clamped, deepest.")
+		.def("links", &McaDensity::links, "Pairs of body ids whose link holds, list of (id1, id2).")
+	)
+	// clang-format on
+
+	/// One side of a pair; p is null where there is none.
+	struct Side {
+		McaPhys* p     = nullptr;
+		int      side  = 0;
+		int      other = -1; ///< place in rows
+	};
+	struct Row {
+		int                  id = 0;
+		State*               state    = nullptr;
+		McaState*            m        = nullptr;
+		McaLawState*         l        = nullptr;
+		const mca::Material* material = nullptr;
+		Real                 d        = 0; ///< diameter [m]
+		Side                 link[6];
+		int                  firstContact = 0, lastContact = 0; ///< in contacts, ascending ids
+		// of this step
+		Real   limit = 0, nearestLink = 1, nearestContact = 1;
+		bool   clampedNow = false, bad = false;
+		Real   plastic = 0, coupling = 0, friction = 0, heated = 0;
+	};
+
+private:
+	bool                       ready = false; ///< engines and bodies checked since construction or loading
+	vector<Row>                rows;          ///< automata, ascending ids
+	vector<int>                place;         ///< of body ids in rows, or -1
+	vector<Side>               contacts;
+	vector<int>                unsettled;
+	vector<mca::Material>      materials;
+	vector<const McaMat*>      known;
+	mca::VolumeRule            rule() const;
+	void                       checkEngines(Scene*) const;
+	void                       build(Scene*);
+	void                       gather(Scene*);
+	void                       findLinks(Scene*);
+	void                       findContacts(Scene*);
+	bool                       breaks(const Row&, int k) const;
+	void                       breakLinks();
+	void                       keepVolume(int i);
+	void                       settleVolumes(bool account);
+	Real                       distance(const Row&, const Side&) const;
+	void                       contactVolume(Row&);
+	void                       volume(Row&, bool withContacts);
+	void                       stress(Row&);
+	void                       contactFriction(Row&);
+	void                       checkResults();
+	[[noreturn]] void          overlapError(const Row&, const Side&, Real ratio) const;
+	Real                       stateEnergy(const Row&, Real J) const;
+	void                       stateEnergies(const Scene&, Real& volumetric, Real& deviatoric, Real& kinetic) const;
+	void                       bookEnergies(Scene*);
+	int                        energyIndex[7] = { -1, -1, -1, -1, -1, -1, -1 };
+};
+REGISTER_SERIALIZABLE(McaDensity);
+
+class McaForces : public GlobalEngine {
+public:
+	void action() override;
+	// clang-format off
+	YADE_CLASS_BASE_DOC(McaForces, GlobalEngine,
+		"Adds the pair forces that :yref:`Law2_ScGeom_McaPhys_Mca` has left in the pairs to the bodies, for each body in the order of its links and of its contacts' ids: the sums do not depend on "
+		"the number of threads, nor on the order of O.interactions after loading. Stops the run before anything moves when a force is not finite. Comes after InteractionLoop.")
+	// clang-format on
+};
+REGISTER_SERIALIZABLE(McaForces);
+} // namespace yade

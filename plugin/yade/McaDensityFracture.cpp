@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// McaDensity: breaking of links, at the steps and in the order of plugin/automata/fracture.cpp.
+#include "McaDensity.hpp"
+
+namespace yade {
+using mca::sqr;
+using mca::VolumeRule;
+using mca::automata::exposedBit;
+using mca::automata::halfShift;
+using mca::automata::nLinks;
+
+bool McaDensity::breaks(const Row& r, int k) const
+{
+	const Side&          s = r.link[k];
+	const Row&           o = rows[size_t(s.other)];
+	const mca::Fracture& f = r.material->fracture;
+	if (!f.active()) return false;
+	if (0.5 * (r.l->criterion + o.l->criterion) >= 1.) return true;
+	// sheared so far that the packing is gone: what follows is contact
+	if (distance(r, s) < mca::automata::collapsed * s.p->d) return true;
+	if (!std::isfinite(f.pairStress)) return false;
+	const Real tension = 0.5 * (s.p->s[s.side] / r.m->volumeRatio + s.p->s[1 - s.side] / o.m->volumeRatio - r.m->pressure - o.m->pressure);
+	return tension >= 0.5 * f.pairStress * (r.m->strength + o.m->strength);
+}
+
+void McaDensity::breakLinks()
+{
+	vector<int> touched;
+	for (size_t i = 0; i < rows.size(); i++) {
+		Row& r = rows[i];
+		for (int k = 0; k < nLinks; k++) {
+			if (!r.link[k].p || !breaks(r, k)) continue;
+			const Side s = r.link[k];
+			Row&       o = rows[size_t(s.other)];
+			const int  back = (k + 3) % nLinks;
+			r.l->flags = (r.l->flags & ~(1 << k)) | exposedBit, o.l->flags = (o.l->flags & ~(1 << back)) | exposedBit;
+			s.p->linked = false;
+			s.p->startContact(distance(r, s)); // stresses go on
+			r.link[k] = o.link[back] = Side();
+			touched.push_back(int(i)), touched.push_back(s.other);
+			brokenLinks++;
+			r.m->brokenLinks++, o.m->brokenLinks++;
+		}
+	}
+	std::sort(touched.begin(), touched.end());
+	touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+	for (int i : touched)
+		keepVolume(i);
+}
+
+// A break changes no volume: what the links had measured goes on as the rest state of what is left.
+void McaDensity::keepVolume(int i)
+{
+	Row&         r = rows[size_t(i)];
+	McaLawState& l = *r.l;
+	const Real   J = r.m->volumeRatio;
+	if (l.rule == int(VolumeRule::affine)) {
+		if (l.offset == 0) return;
+		Real Fxx = 0, Fxy = 0, Fyx = 0, Fyy = 0;
+		for (int k = 0; k < nLinks; k++) {
+			if (!r.link[k].p) continue;
+			const Vector3r x = rows[size_t(r.link[k].other)].state->se3.position - r.state->se3.position;
+			Fxx += mca::linkX[k] * x[0], Fyx += mca::linkX[k] * x[1], Fxy += mca::linkY[k] * x[0], Fyy += mca::linkY[k] * x[1];
+		}
+		const Real det = (Fxx * Fyy - Fxy * Fyx) / (9. * sqr(r.d));
+		l.offset       = det > mca::automata::minVolume ? J / det : 0.;
+		if (l.offset == 0) unsettled.push_back(i);
+		return;
+	}
+	const bool inverse = l.rule == int(VolumeRule::inversePower);
+	Real       sum     = 0;
+	for (int k = 0; k < nLinks; k++) {
+		if (!r.link[k].p) continue;
+		const Real d = r.link[k].p->d, r2 = sqr(distance(r, r.link[k])), w = (l.flags >> (halfShift + k)) & 1 ? 0.5 : 1.;
+		sum += w * (inverse ? mca::volumeTerm<VolumeRule::inversePower, 2>(d, r2) : mca::volumeTerm<VolumeRule::meanDistance, 2>(d, r2));
+	}
+	l.rest = sum + l.contactSum - (inverse ? 1. / J - 1. : std::sqrt(J) - 1.) / l.invN;
+	if (l.flags & mca::automata::linkBits) return;
+	l.rest = 0;
+	unsettled.push_back(i);
+}
+
+Real McaDensity::stateEnergy(const Row& r, Real J) const { return r.l->cell * mca::storedEnergy(r.material->eos, J - 1.); }
+
+// An automaton that has lost its volume has it from its contacts alone. Under pressure their rest distances are set so that the pressure goes on;
+// tension is released, and booked.
+void McaDensity::settleVolumes(bool account)
+{
+	for (int i : unsettled) {
+		Row&       r    = rows[size_t(i)];
+		const bool mean = r.l->rule == int(VolumeRule::meanDistance);
+		const Real J    = r.m->volumeRatio;
+		// only neighbours about as near as in the packing can take over: a far one would push across a gap
+		const auto near = [&](const Side& s) { return distance(r, s) < 1.1 * s.p->d; };
+		int        n    = 0;
+		for (int c = r.firstContact; c < r.lastContact; c++)
+			n += near(contacts[size_t(c)]);
+		const bool holds = n >= 3 && J < 1.;
+		const Real need  = mean ? (std::sqrt(J) - 1.) / (n * r.l->invN) : (1. / J - 1.) / (n * r.l->invN);
+		for (int c = r.firstContact; c < r.lastContact; c++) {
+			const Side& s  = contacts[size_t(c)];
+			const Real  r0 = distance(r, s);
+			if (!holds || !near(s)) s.p->rest[s.side] = std::min(r0, s.p->d);
+			else s.p->rest[s.side] = mean ? r0 / (1. + need) : r0 * std::sqrt(1. + need);
+		}
+		if (holds) continue;
+		if (account) fracture += stateEnergy(r, J) - stateEnergy(r, 1.);
+		r.m->volumeRatio = 1.;
+	}
+	unsettled.clear();
+}
+} // namespace yade

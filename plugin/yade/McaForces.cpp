@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The end of the law's step: sums of the pair forces in a fixed order, energies.
+#include "McaCast.hpp"
+#include "McaDensity.hpp"
+#include <core/Omega.hpp>
+#include <core/Scene.hpp>
+
+namespace yade {
+YADE_PLUGIN((McaForces));
+using mca::sqr;
+using mca::automata::nLinks;
+
+namespace {
+	/// Force [N/m], torque about z [N] and viscous power [W/m] on one body, links in the order of their slots, then the others by id.
+	struct Sum {
+		Vector3r force = Vector3r::Zero();
+		Real     torque = 0, linkHeat = 0, otherHeat = 0;
+		bool     any = false;
+		void     add(const Body& b, const McaLawState* l)
+		{
+			const McaPhys* linked[nLinks] = {};
+			Vector3r       others         = Vector3r::Zero();
+			Real           otherTorque    = 0;
+			for (const auto& entry : b.intrs) {
+				const auto* p = castTo<const McaPhys>(entry.second->phys.get());
+				if (!p) continue;
+				any             = true;
+				const int  side = entry.second->getId1() == b.id ? 0 : 1;
+				if (p->linked && l) {
+					linked[side ? (p->slot + 3) % nLinks : p->slot] = p;
+					continue;
+				}
+				others += side ? Vector3r(-p->force) : p->force;
+				otherTorque += p->torque[side];
+				otherHeat += 0.5 * p->heatRate;
+			}
+			for (int k = 0; k < nLinks; k++) {
+				if (!linked[k]) continue;
+				const int side = linked[k]->slot == k ? 0 : 1;
+				force += side ? Vector3r(-linked[k]->force) : linked[k]->force;
+				torque += linked[k]->torque[side];
+				linkHeat += 0.5 * linked[k]->heatRate;
+			}
+			force += others, torque += otherTorque;
+		}
+	};
+} // namespace
+
+void McaForces::action()
+{
+	for (const auto& e : scene->engines)
+		if (auto* d = dynamic_cast<McaDensity*>(e.get())) return d->addForces(scene);
+	throw mca::Error("McaForces: there is no McaDensity in O.engines; it must come before InteractionLoop.");
+}
+
+void McaDensity::addForces(Scene* scene)
+{
+	if (doneAt != scene->iter) throw mca::Error("McaForces: McaDensity has not run in this step; it must come before InteractionLoop and run in every step.");
+	const auto& bodies = scene->bodies->body;
+	const long  n      = long(bodies.size());
+	vector<Sum> sums(bodies.size());
+#pragma omp parallel for schedule(static)
+	for (long i = 0; i < n; i++)
+		if (const auto& b = bodies[size_t(i)]) {
+			auto* m = castTo<McaState>(b->state.get());
+			sums[size_t(i)].add(*b, m ? m->law.get() : nullptr);
+		}
+	for (long i = 0; i < n; i++) {
+		const Sum& s = sums[size_t(i)];
+		if (std::fabs(s.force[0]) + std::fabs(s.force[1]) + std::fabs(s.force[2]) + std::fabs(s.torque) < 1e300) continue;
+		std::ostringstream o;
+		o << "body " << i << ": force (" << s.force[0] << ", " << s.force[1] << ") N/m in step " << steps
+		  << " is not finite. Positions are those before the step; save and look, or use a smaller time step. Check positions and velocities that a script has set.";
+		throw mca::Error(o.str());
+	}
+	for (long i = 0; i < n; i++) {
+		const Sum& s = sums[size_t(i)];
+		if (!s.any) continue;
+		scene->forces.addForce(int(i), s.force);
+		scene->forces.addTorque(int(i), Vector3r(0, 0, s.torque));
+		if (size_t(i) >= place.size() || place[size_t(i)] < 0) continue;
+		const Row& r = rows[size_t(place[size_t(i)])];
+		r.m->links   = __builtin_popcount(r.l->flags & mca::automata::linkBits);
+		if (r.material->eos.mieGrueneisen) { // the heat of the viscosity of links goes into the internal energy
+			r.m->dissipated += s.linkHeat * lastMove / (r.material->eos.rho0 * r.l->cell);
+			if (scene->trackEnergy) heated += s.linkHeat * lastMove;
+		}
+		if (scene->trackEnergy) viscous += (s.linkHeat + s.otherHeat) * lastMove;
+	}
+	if (scene->trackEnergy) bookEnergies(scene);
+	lastMove = scene->dt;
+	steps++;
+}
+
+// State energies: volume and deviator of all automata [J/m].
+void McaDensity::stateEnergies(const Scene& scene, Real& volumetric, Real& deviatoric, Real& kinetic) const
+{
+	volumetric = deviatoric = kinetic = 0;
+	vector<const McaMat*> seen;
+	vector<mca::Material> constants;
+	for (const auto& b : scene.bodies->body) {
+		auto* m = b ? castTo<McaState>(b->state.get()) : nullptr;
+		if (!m || !m->law) continue;
+		const auto* mat = static_cast<const McaMat*>(b->material.get());
+		auto        it  = std::find(seen.begin(), seen.end(), mat);
+		if (it == seen.end()) seen.push_back(mat), constants.push_back(mat->toMaterial()), it = seen.end() - 1;
+		const auto& c = constants[size_t(it - seen.begin())];
+		const auto& l = *m->law;
+		volumetric += c.eos.mieGrueneisen ? l.cell * c.eos.rho0 * m->dissipated : l.cell * mca::storedEnergy(c.eos, m->volumeRatio - 1.);
+		if (l.rule == int(mca::VolumeRule::affine) && l.offset > 0) volumetric += l.cell * mca::storedEnergy(c.eos, 1. / (1. + l.contactSum / nLinks) - 1.);
+		kinetic += 0.5 * (m->mass * m->vel.squaredNorm() + m->inertia[2] * sqr(m->angVel[2]));
+		if (!(c.G > 0)) continue;
+		Real square = 0;
+		for (const auto& entry : b->intrs) {
+			const auto* p = castTo<const McaPhys>(entry.second->phys.get());
+			if (!p || p->wall) continue;
+			const int side = entry.second->getId1() == b->id ? 0 : 1;
+			square += (p->linked && p->half ? 0.5 : 1.) * (sqr(p->s[side]) + sqr(p->tau[side]));
+		}
+		// J sigma_eq^2/(6G) of links and szz; stresses stand times J
+		deviatoric += l.cell * (square * l.invN / (2. * c.G * m->volumeRatio) + m->volumeRatio * sqr(m->stressZZ) / (4. * c.G));
+	}
+	volumetric -= heated;
+}
+
+void McaDensity::bookEnergies(Scene* scene)
+{
+	Real volumetric, deviatoric, kinetic;
+	stateEnergies(*scene, volumetric, deviatoric, kinetic);
+	const char* names[]  = { "mcaVolumetric", "mcaDeviatoric", "mcaPlastic", "mcaViscous", "mcaFriction", "mcaFracture", "mcaCoupling" };
+	const Real  values[] = { volumetric, deviatoric, plastic, viscous, frictional, fracture, coupling };
+	for (int k = 0; k < 7; k++)
+		scene->energy->set(values[k], names[k], energyIndex[k]);
+}
+
+py::dict McaDensity::energies()
+{
+	Real volumetric, deviatoric, kinetic;
+	stateEnergies(*Omega::instance().getScene(), volumetric, deviatoric, kinetic);
+	py::dict d;
+	d["kinetic"] = kinetic, d["volumetric"] = volumetric, d["deviatoric"] = deviatoric, d["plastic"] = plastic, d["viscous"] = viscous, d["friction"] = frictional, d["fracture"] = fracture;
+	d["coupling"] = coupling, d["total"] = kinetic + volumetric + deviatoric + plastic + viscous + frictional + fracture + coupling;
+	return d;
+}
+
+py::dict McaDensity::counters() const
+{
+	py::dict d;
+	d["steps"] = steps, d["brokenLinks"] = brokenLinks, d["clamped"] = clamped, d["deepest"] = deepest;
+	return d;
+}
+
+py::list McaDensity::links() const
+{
+	py::list out;
+	for (const auto& b : Omega::instance().getScene()->bodies->body)
+		if (b)
+			for (const auto& entry : b->intrs)
+				if (const auto* p = castTo<const McaPhys>(entry.second->phys.get()); p && p->linked && b->id < entry.first) out.append(py::make_tuple(b->id, entry.first));
+	return out;
+}
+} // namespace yade

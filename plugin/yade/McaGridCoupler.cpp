@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "McaGridCoupler.hpp"
+#include <core/Omega.hpp>
+#include <core/Scene.hpp>
+#include <pkg/common/Sphere.hpp>
+#include <set>
+
+namespace yade {
+YADE_PLUGIN((McaGridCoupler));
+
+using mca::interface::Carried;
+using mca::interface::RowPoint;
+
+namespace {
+	template <class T> shared_ptr<T> onlyOne(Scene* scene, const char* attribute)
+	{
+		shared_ptr<T> found;
+		for (const auto& e : scene->engines) {
+			auto t = boost::dynamic_pointer_cast<T>(e);
+			if (!t) continue;
+			if (found) throw mca::Error(string("McaGridCoupler: there are several ") + t->getClassName() + " in O.engines; say which by the attribute '" + attribute + "'.");
+			found = t;
+		}
+		return found;
+	}
+	mca::grid::Side sideOf(const string& name)
+	{
+		if (name == "bottom") return mca::grid::Side::bottom;
+		if (name == "right") return mca::grid::Side::right;
+		if (name == "top") return mca::grid::Side::top;
+		if (name == "left") return mca::grid::Side::left;
+		throw mca::Error("McaGridCoupler: side '" + name + "' is unknown; it must be 'bottom', 'right', 'top' or 'left'.");
+	}
+} // namespace
+
+vector<McaGridCoupler*> McaGridCoupler::all(Scene* scene) const
+{
+	vector<McaGridCoupler*> v;
+	for (const auto& e : scene->engines)
+		if (auto* c = dynamic_cast<McaGridCoupler*>(e.get()))
+			if (!c->dead) v.push_back(c);
+	return v;
+}
+
+void McaGridCoupler::find(Scene* scene)
+{
+	if (foundGrid) return;
+	foundAutomata = automata ? automata : onlyOne<McaEngine>(scene, "automata");
+	foundGrid     = grid ? grid : onlyOne<McaGridEngine>(scene, "grid");
+	if (!foundGrid) throw mca::Error("McaGridCoupler: there is no McaGridEngine in O.engines.");
+}
+
+bool McaGridCoupler::drives(const McaSolverEngine* engine, Scene* scene)
+{
+	find(scene);
+	return engine == foundAutomata.get() || engine == foundGrid.get();
+}
+
+vector<RowPoint> McaGridCoupler::candidates(Scene* scene, vector<mca::Material>& keep) const
+{
+	vector<RowPoint>          out;
+	std::map<const void*, size_t> known;
+	const auto                add = [&](const Body& b, const vector<Vector3r>* at) {
+                const auto* m      = dynamic_cast<const McaMat*>(b.material.get());
+                const auto* sphere = dynamic_cast<const Sphere*>(b.shape.get());
+                if (!sphere || (!m && ids.empty())) return;
+                const Vector3r& x = at ? (*at)[0] : b.state->se3.position;
+                RowPoint        p;
+                p.id = b.id, p.x = x[0], p.y = x[1], p.diameter = 2. * sphere->radius, p.mass = b.state->mass;
+                p.weight = p.mass / (b.material->density * mca::Lattice<2>::cell(p.diameter));
+                if (m) {
+                        const auto it = known.emplace(m, keep.size());
+                        if (it.second) keep.push_back(m->toMaterial());
+                        p.material = reinterpret_cast<const mca::Material*>(it.first->second + 1); // an index until the list is complete
+                }
+                out.push_back(p);
+	};
+	const auto point = [&](int id) {
+		const auto& b = scene->bodies->body[size_t(id)];
+		if (!foundAutomata) return add(*b, nullptr);
+		const auto  i = foundAutomata->automata().indexOf(id);
+		const auto& S = foundAutomata->automata().store;
+		if (i < 0) throw mca::Error("McaGridCoupler: body " + std::to_string(id) + " is not an automaton of the McaEngine (material McaMat and shape Sphere).");
+		const vector<Vector3r> x { Vector3r(S.x[size_t(i)], S.y[size_t(i)], 0) };
+		add(*b, &x);
+	};
+	if (!ids.empty()) {
+		for (int id : ids) {
+			if (id < 0 || size_t(id) >= scene->bodies->body.size() || !scene->bodies->body[size_t(id)]) throw mca::Error("McaGridCoupler: there is no body " + std::to_string(id) + ".");
+			point(id);
+		}
+	} else
+		for (const auto& b : scene->bodies->body)
+			if (b && dynamic_cast<const McaMat*>(b->material.get()) && dynamic_cast<const Sphere*>(b->shape.get())) point(b->id);
+	for (auto& p : out)
+		if (p.material) p.material = &keep[reinterpret_cast<size_t>(p.material) - 1];
+	return out;
+}
+
+void McaGridCoupler::makeRow(Scene* scene)
+{
+	if (foundAutomata) foundAutomata->ensureBuilt(scene);
+	mca::grid::Grid&                  g = foundGrid->grid();
+	const mca::grid::OpenNodes&       n = g.open();
+	mca::interface::SideNodes         s;
+	s.node              = g.sideNodes(block, sideOf(side), start, end);
+	const auto& b       = g.block(block);
+	s.block             = b.options.name;
+	s.material          = &b.material;
+	for (int k : s.node)
+		s.x.push_back(n.x[size_t(k)]), s.y.push_back(n.y[size_t(k)]);
+	// middle of the block's cells next to the side
+	const bool   alongI = side == "bottom" || side == "top";
+	const int    k      = start, i = alongI ? k : side == "left" ? 1 : b.ni - 1, j = alongI ? (side == "bottom" ? 1 : b.nj - 1) : k;
+	s.inX = b.x[b.node(i, j)], s.inY = b.y[b.node(i, j)];
+	mca::interface::MapOptions o;
+	o.tolerance = tolerance, o.smallestRatio = ratio[0], o.largestRatio = ratio[1], o.otherMaterials = otherMaterials, o.onlyGiven = !ids.empty();
+	if (!(tolerance > 0 && tolerance <= 0.05)) throw mca::Error("McaGridCoupler: tolerance = " + std::to_string(tolerance) + " must be above 0 and at most 0.05 diameters.");
+	vector<mca::Material> keep;
+	row = mca::interface::makeMap(candidates(scene, keep), s, o);
+}
+
+void McaGridCoupler::tieRow(Scene* scene)
+{
+	mca::grid::Grid& g = foundGrid->grid();
+	for (const auto& m : mca::interface::nodeMasses(row))
+		g.addNodeMass(m.first, m.second);
+	places.clear();
+	for (const Carried& c : row) {
+		const auto v = mca::interface::motion(c, g.open());
+		if (foundAutomata) {
+			auto&        A = foundAutomata->automata();
+			const size_t q = size_t(A.indexOf(c.id));
+			places.push_back(long(A.tie(q, true)));
+			A.setTiedVelocity(size_t(places.back()), v.vx, v.vy, A.store.omega[q]);
+		} else {
+			State& st = *scene->bodies->body[size_t(c.id)]->state;
+			st.blockedDOFs |= State::DOF_X | State::DOF_Y | State::DOF_Z | State::DOF_RX | State::DOF_RY;
+			st.vel = Vector3r(v.vx, v.vy, 0);
+		}
+	}
+	tied = true;
+}
+
+void McaGridCoupler::prepare(Scene* scene)
+{
+	find(scene);
+	if (tied) return;
+	const auto couplers = all(scene);
+	try { // all rows first: nothing is tied unless every row fits
+		for (auto* c : couplers)
+			if (!c->tied) c->find(scene), c->makeRow(scene);
+	} catch (...) {
+		for (auto* c : couplers) {
+			if (c->tied) continue;
+			c->row.clear();
+			if (c->foundAutomata) c->foundAutomata->forget(); // bodies that the script corrects are gathered anew
+		}
+		throw;
+	}
+	for (auto* c : couplers)
+		if (!c->tied) c->tieRow(scene);
+}
+
+void McaGridCoupler::forcesToNodes(Scene* scene)
+{
+	auto&      g = foundGrid->grid();
+	auto&      n = g.open();
+	const Real dt = scene->dt;
+	if (foundAutomata) {
+		auto&       A = foundAutomata->automata();
+		const auto& S = A.store;
+		const bool  outside = !S.ex.empty();
+		const Real  f = A.kick(dt) / g.kick(dt); // 1 but for the first step of one side beside an older one
+		for (const Carried& c : row) {
+			const size_t i = size_t(A.indexOf(c.id));
+			mca::interface::addForce(c, f * (outside ? S.fx[i] + S.ex[i] : S.fx[i]), f * (outside ? S.fy[i] + S.ey[i] : S.fy[i]), n);
+		}
+	} else {
+		scene->forces.sync();
+		const Real f = dt / g.kick(dt); // NewtonIntegrator's forces act over dt
+		for (const Carried& c : row) {
+			const Vector3r& force = scene->forces.getForce(c.id);
+			mca::interface::addForce(c, f * force[0], f * force[1], n);
+			auto& at = scene->bodies->body[size_t(c.id)]->state->se3.position; // takes back the round-off of the last move
+			const auto m = mca::interface::motion(c, n);
+			at[0] = m.x, at[1] = m.y;
+		}
+	}
+}
+
+void McaGridCoupler::motionToRow(Scene* scene, bool positions)
+{
+	const auto& n = foundGrid->grid().open();
+	for (size_t k = 0; k < row.size(); k++) {
+		const auto m = mca::interface::motion(row[k], n);
+		if (!foundAutomata) {
+			if (!positions) scene->bodies->body[size_t(row[k].id)]->state->vel = Vector3r(m.vx, m.vy, 0);
+			continue;
+		}
+		auto&        A = foundAutomata->automata();
+		const size_t i = size_t(A.indexOf(row[k].id));
+		if (positions) A.store.x[i] = m.x, A.store.y[i] = m.y; // no drift by round-off
+		else A.setTiedVelocity(size_t(places[k]), m.vx, m.vy, A.store.omega[i]);
+	}
+}
+
+void McaGridCoupler::action()
+{
+	timingDeltas->start();
+	prepare(scene);
+	if ((foundAutomata && !foundAutomata->forcesReady) || !foundGrid->grid().between())
+		throw mca::Error("McaGridCoupler: it must follow McaEngine (or InteractionLoop) and McaGridEngine in O.engines, and both must run.");
+	forcesToNodes(scene);
+	const auto couplers = all(scene);
+	timingDeltas->checkpoint("forces to the nodes");
+	if (couplers.back() != this) return;
+	// the last one moves all
+	std::set<McaSolverEngine*> done;
+	for (auto* c : couplers)
+		if (done.insert(c->foundGrid.get()).second) c->foundGrid->integrate(scene);
+	timingDeltas->checkpoint("integration of the grid");
+	for (auto* c : couplers)
+		c->motionToRow(scene, false);
+	timingDeltas->checkpoint("motion to the row");
+	for (auto* c : couplers)
+		if (c->foundAutomata && done.insert(c->foundAutomata.get()).second) c->foundAutomata->integrate(scene);
+	timingDeltas->checkpoint("integration of the automata");
+	for (auto* c : couplers)
+		if (c->foundAutomata) c->motionToRow(scene, true);
+	timingDeltas->checkpoint("motion to the row");
+}
+
+void McaGridCoupler::preSave(McaGridCoupler&)
+{
+	state.clear();
+	state.put(row);
+	state.put(places);
+}
+
+void McaGridCoupler::postLoad(McaGridCoupler&)
+{
+	foundAutomata.reset(), foundGrid.reset();
+	if (state.empty()) return;
+	sdk::BlobReader in(state);
+	in.get(row);
+	in.get(places);
+	tied = !row.empty();
+	state.clear();
+}
+
+vector<int> McaGridCoupler::rowIds() const
+{
+	vector<int> v;
+	for (const Carried& c : row)
+		v.push_back(c.id);
+	return v;
+}
+vector<Vector2i> McaGridCoupler::rowNodes() const
+{
+	vector<Vector2i> v;
+	for (const Carried& c : row)
+		v.push_back(Vector2i(c.a, c.b));
+	return v;
+}
+vector<Vector2r> McaGridCoupler::rowShares() const
+{
+	vector<Vector2r> v;
+	for (const Carried& c : row)
+		v.push_back(Vector2r(c.Na, c.Nb));
+	return v;
+}
+
+py::dict McaGridCoupler::energies()
+{
+	Scene* now = Omega::instance().getScene().get();
+	Real   kinetic = 0, total = 0, booked = 0, px = 0, py_ = 0, jx = 0, jy = 0, turn = 0;
+	std::set<McaSolverEngine*> done;
+	for (auto* c : all(now)) {
+		c->prepare(now);
+		if (c->foundAutomata && done.insert(c->foundAutomata.get()).second) {
+			const auto a = c->foundAutomata->automata().account();
+			kinetic += a.kinetic, total += a.total(), booked += a.bookedError(), px += a.px, py_ += a.py, jx += a.impulseX, jy += a.impulseY, turn += a.angular;
+		}
+		if (!done.insert(c->foundGrid.get()).second) continue;
+		const auto& g = c->foundGrid->grid();
+		const auto  e = g.energy();
+		kinetic += e.kinetic, total += e.total(), booked += e.total(), px += e.momentumX, py_ += e.momentumY, jx += e.impulseX, jy += e.impulseY;
+		for (int b = 0; b < g.blocks(); b++) {
+			const auto& B = g.block(b);
+			for (int j = 1; j < B.nj; j++)
+				for (int i = 1; i < B.ni; i++) {
+					const size_t k = B.node(i, j);
+					if (B.copyOf(i, j) < 0) turn += (B.x[k] * B.vy[k] - B.y[k] * B.vx[k]) / B.invMass[k];
+				}
+		}
+		const auto& n = g.open();
+		for (size_t k = 0; k < size_t(n.size()); k++)
+			turn += n.mass[k] * (n.x[k] * n.vy[k] - n.y[k] * n.vx[k]);
+	}
+	py::dict d;
+	d["kinetic"] = kinetic, d["total"] = total, d["booked"] = booked, d["momentumX"] = px, d["momentumY"] = py_, d["impulseX"] = jx, d["impulseY"] = jy, d["angularMomentum"] = turn;
+	return d;
+}
+} // namespace yade

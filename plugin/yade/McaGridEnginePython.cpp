@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// McaGridEngine: conversion of what scripts give and take.
+#include "McaGridEngine.hpp"
+#include <sdk/arrayView.hpp>
+
+namespace yade {
+using mca::grid::Side;
+using mca::grid::Table;
+
+namespace {
+	/// Any sequence or array of numbers as doubles; shape of the array if asked for.
+	vector<double> numbers(py::object o, vector<long>* shape = nullptr)
+	{
+		const py::object numpy = py::import("numpy");
+		const py::object a     = numpy.attr("ascontiguousarray")(o, "float64");
+		Py_buffer        b;
+		if (PyObject_GetBuffer(a.ptr(), &b, PyBUF_C_CONTIGUOUS) != 0) py::throw_error_already_set();
+		const double*  p = static_cast<const double*>(b.buf);
+		vector<double> v(p, p + b.len / Py_ssize_t(sizeof(double)));
+		if (shape) shape->assign(b.shape, b.shape + b.ndim);
+		PyBuffer_Release(&b);
+		return v;
+	}
+
+	/// A number, or a pair (times, values).
+	Table table(py::object o)
+	{
+		const py::extract<double> number(o);
+		if (number.check()) return Table(number());
+		if (!PySequence_Check(o.ptr()) || py::len(o) != 2) throw mca::Error("McaGridEngine: a time history is a number or a pair (times [s], values).");
+		return Table(numbers(o[0]), numbers(o[1]));
+	}
+
+	vector<int> nodeList(py::object o)
+	{
+		const py::extract<int> one(o);
+		if (one.check()) return { one() };
+		vector<int> v;
+		for (long k = 0; k < py::len(o); k++)
+			v.push_back(py::extract<int>(o[k]));
+		return v;
+	}
+
+	Side sideOf(const string& name)
+	{
+		if (name == "bottom") return Side::bottom;
+		if (name == "right") return Side::right;
+		if (name == "top") return Side::top;
+		if (name == "left") return Side::left;
+		throw mca::Error("McaGridEngine: side '" + name + "' is unknown; it must be 'bottom', 'right', 'top' or 'left'.");
+	}
+
+	mca::Material constants(const shared_ptr<Material>& m)
+	{
+		const auto* known = dynamic_cast<const McaMat*>(m.get());
+		if (!known) throw mca::Error("McaGridEngine: unknown material" + (m ? " of class " + m->getClassName() : string()) + "; blocks are made of McaMat.");
+		return known->toMaterial();
+	}
+} // namespace
+
+mca::grid::BlockOptions McaGridEngine::blockOptions(const string& name, Real hourglass, bool edgeViscosity) const
+{
+	mca::grid::BlockOptions o;
+	o.name          = name;
+	o.hourglass     = hourglass;
+	o.edgeViscosity = edgeViscosity;
+	return o;
+}
+
+int McaGridEngine::addRectangle(shared_ptr<Material> material, py::object xs, py::object ys, const string& name, Real hourglass, bool edgeViscosity)
+{
+	return grid().addRectangle(constants(material), numbers(xs), numbers(ys), blockOptions(name, hourglass, edgeViscosity));
+}
+
+int McaGridEngine::addBlock(shared_ptr<Material> material, py::object x, py::object y, const string& name, Real hourglass, bool edgeViscosity)
+{
+	vector<long>         sx, sy;
+	const vector<double> nx = numbers(x, &sx), ny = numbers(y, &sy);
+	if (sx.size() != 2 || sx != sy) throw mca::Error("block '" + name + "': x and y must be arrays of the same shape (rows+1, cells per row+1).");
+	return grid().addBlock(constants(material), int(sx[1]) - 1, int(sx[0]) - 1, nx, ny, blockOptions(name, hourglass, edgeViscosity));
+}
+
+py::list McaGridEngine::sideNodes(int block, const string& side, int start, int end)
+{
+	py::list l;
+	for (int n : grid().sideNodes(block, sideOf(side), start, end))
+		l.append(n);
+	return l;
+}
+
+void McaGridEngine::fix(int block, const string& side, bool x, bool y, int start, int end) { grid().fix(grid().sideNodes(block, sideOf(side), start, end), x, y); }
+void McaGridEngine::fixNodes(py::object nodes, bool x, bool y) { grid().fix(nodeList(nodes), x, y); }
+void McaGridEngine::symmetry(int block, const string& side) { grid().symmetry(block, sideOf(side)); }
+
+void McaGridEngine::prescribe(int block, const string& side, py::object vx, py::object vy, int start, int end)
+{
+	const auto nodes = grid().sideNodes(block, sideOf(side), start, end);
+	if (!vx.is_none()) grid().prescribe(nodes, 1, 0, table(vx));
+	if (!vy.is_none()) grid().prescribe(nodes, 0, 1, table(vy));
+}
+
+void McaGridEngine::prescribeNodes(py::object nodes, const Vector2r& d, py::object velocity) { grid().prescribe(nodeList(nodes), d[0], d[1], table(velocity)); }
+
+void McaGridEngine::traction(int block, const string& side, py::object x, py::object y, int start, int end)
+{
+	grid().traction(block, sideOf(side), table(x), table(y), start, end);
+}
+
+void McaGridEngine::pressureLoad(int block, const string& side, py::object p, int start, int end) { grid().pressureLoad(block, sideOf(side), table(p), start, end); }
+void McaGridEngine::viscous(int block, const string& side, int start, int end) { grid().viscous(block, sideOf(side), start, end); }
+void McaGridEngine::force(py::object nodes, py::object fx, py::object fy) { grid().nodalForce(nodeList(nodes), table(fx), table(fy)); }
+
+void McaGridEngine::setVelocity(int block, py::object velocity)
+{
+	vector<long>         shape;
+	const vector<double> v = numbers(velocity, &shape);
+	if (v.size() == 2) {
+		grid().setVelocity(block, [&](double, double) { return std::array<double, 2> { v[0], v[1] }; });
+		return;
+	}
+	if (block < 0 || block >= grid().blocks()) throw mca::Error("McaGridEngine: there is no block " + std::to_string(block) + ".");
+	const auto& b = grid().block(block);
+	if (shape.size() != 3 || shape[0] != b.nj + 1 || shape[1] != b.ni + 1 || shape[2] != 2)
+		throw mca::Error("block '" + b.options.name + "': velocity must be a pair or an array of shape (" + std::to_string(b.nj + 1) + ", " + std::to_string(b.ni + 1) + ", 2).");
+	size_t k = 0; // setVelocity asks row by row
+	grid().setVelocity(block, [&](double, double) {
+		k += 2;
+		return std::array<double, 2> { v[k - 2], v[k - 1] };
+	});
+}
+
+int McaGridEngine::addGauge(const Vector2r& at, int period) { return grid().addGauge(at[0], at[1], period); }
+
+py::object McaGridEngine::view(int block, const string& what)
+{
+	if (block < 0 || block >= grid().blocks()) throw mca::Error("McaGridEngine: there is no block " + std::to_string(block) + ".");
+	const auto&   b     = grid().block(block);
+	const double* p     = nullptr;
+	bool          known = true, cells = true;
+	shared_ptr<void> owner = solver;
+	if (what == "x" || what == "y" || what == "vx" || what == "vy") {
+		cells = false;
+		p     = what == "x" ? b.x : what == "y" ? b.y : what == "vx" ? b.vx : b.vy;
+	} else if (what == "sxx") p = b.sxx;
+	else if (what == "syy") p = b.syy;
+	else if (what == "sxy") p = b.sxy;
+	else if (what == "plasticStrain") p = b.eqps;
+	else if (what == "restArea") p = b.restArea;
+	else if (what == "energy") p = b.energy;
+	else if (what == "temperature") p = b.temperature;
+	else if (what == "pressure") {
+		pressures.resize(size_t(grid().blocks()));
+		auto& v = pressures[size_t(block)];
+		if (!v) v = shared_ptr<vector<double>>(new vector<double>(b.pitch * size_t(b.nj)));
+		grid().pressure(block, v->data());
+		p     = v->data();
+		owner = v;
+	} else
+		known = false;
+	if (!known)
+		throw mca::Error("McaGridEngine: there is no view '" + what + "'; there are x, y, vx, vy, sxx, syy, sxy, plasticStrain, restArea, energy, temperature, pressure.");
+	if (!p) throw mca::Error("McaGridEngine: block '" + b.options.name + "' does not keep '" + what + "'" + (what == "energy" ? "; set account=True before the first block." : "; its material is not Johnson-Cook."));
+	const Py_ssize_t rows = cells ? b.nj : b.nj + 1, columns = cells ? b.ni : b.ni + 1;
+	return sdk::makeArrayView({ const_cast<double*>(p), "d", Py_ssize_t(sizeof(double)), { rows, columns }, { Py_ssize_t(b.pitch * sizeof(double)), Py_ssize_t(sizeof(double)) }, owner, false });
+}
+
+py::object McaGridEngine::gaugeHistory(int k)
+{
+	if (k < 0 || k >= grid().gauges()) throw mca::Error("McaGridEngine: there is no gauge " + std::to_string(k) + "; there are " + std::to_string(grid().gauges()) + ".");
+	const auto& h = grid().gauge(k).history;
+	static_assert(sizeof(mca::grid::Sample) == 10 * sizeof(double), "a sample is a row of ten numbers");
+	static const double none = 0;
+	return sdk::arrayCopy(h.empty() ? &none : &h[0].time, { Py_ssize_t(h.size()), 10 });
+}
+
+py::dict McaGridEngine::probeLine(const Vector2r& from, const Vector2r& to, int n)
+{
+	const auto s = grid().probeLine(from[0], from[1], to[0], to[1], n);
+	py::dict   d;
+	const auto put = [&](const char* name, double mca::grid::Sample::*member) {
+		vector<double> v;
+		for (const auto& e : s)
+			v.push_back(e.*member);
+		v.reserve(1);
+		d[name] = sdk::arrayCopy(v.data(), { Py_ssize_t(v.size()) });
+	};
+	using S = mca::grid::Sample;
+	put("x", &S::x), put("y", &S::y), put("vx", &S::vx), put("vy", &S::vy), put("pressure", &S::pressure);
+	put("sxx", &S::sxx), put("syy", &S::syy), put("sxy", &S::sxy), put("plasticStrain", &S::eqps);
+	return d;
+}
+
+py::dict McaGridEngine::energies()
+{
+	const mca::grid::Energy e = grid().energy();
+	py::dict                d;
+	d["kinetic"] = e.kinetic, d["internal"] = e.internal, d["total"] = e.total();
+	d["workLoads"] = e.workLoads, d["workExternal"] = e.workExternal, d["workConstraints"] = e.workConstraints, d["workViscous"] = e.workViscous;
+	d["momentumX"] = e.momentumX, d["momentumY"] = e.momentumY, d["impulseX"] = e.impulseX, d["impulseY"] = e.impulseY;
+	return d;
+}
+
+py::list McaGridEngine::blockList()
+{
+	py::list l;
+	for (int k = 0; k < grid().blocks(); k++) {
+		py::dict d;
+		d["name"]  = grid().block(k).options.name;
+		d["cells"] = py::make_tuple(grid().block(k).ni, grid().block(k).nj);
+		l.append(d);
+	}
+	return l;
+}
+} // namespace yade

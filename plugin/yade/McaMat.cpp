@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "McaMat.hpp"
+
+namespace yade {
+YADE_PLUGIN((McaLawState)(McaState)(McaMat));
+
+mca::Material McaMat::toMaterial() const
+{
+	const string name = label.empty() ? "McaMat " + std::to_string(id) : label;
+	auto         pick = [&](const string& what, const string& value, std::initializer_list<const char*> names) {
+                string list;
+                int    k = 0;
+                for (auto n : names) {
+                        if (value == n) return k;
+                        list += string(k++ ? ", '" : "'") + n + "'";
+                }
+                throw mca::Error("material '" + name + "': " + what + " = '" + value + "' is unknown; it must be one of " + list + ".");
+	};
+	mca::Material m;
+	const int     law   = pick("eos", eos, { "shockAdiabat", "linear", "mieGruneisen" });
+	m.eos.rho0          = density;
+	m.eos.c0            = bulkSoundSpeed;
+	m.eos.b             = law == 1 ? 0. : hugoniotSlope;
+	m.eos.gamma0        = gruneisen;
+	m.eos.mieGrueneisen = law == 2;
+	m.G                 = shearModulus;
+	m.yield.kind        = mca::YieldKind(pick("yieldModel", yieldModel, { "elastic", "perfect", "linearHardening", "johnsonCook" }));
+	// an infinite yield stress is the elastic material: no plastic code runs
+	if (std::isinf(yieldStress) || shearModulus == 0) m.yield.kind = mca::YieldKind::elastic;
+	m.yield.A  = yieldStress;
+	m.yield.B  = m.yield.kind == mca::YieldKind::elastic || m.yield.kind == mca::YieldKind::perfect ? 0. : hardeningModulus;
+	m.yield.n  = hardeningExponent;
+	m.yield.C  = rateCoefficient;
+	m.yield.rate0 = referenceRate;
+	m.yield.m  = thermalSoftening;
+	m.yield.Tm = meltTemperature;
+	m.yield.T0 = referenceTemperature;
+	m.yield.heatPerWork = heatCapacity > 0 ? taylorQuinney / (density * heatCapacity) : 0.;
+	m.fracture.strain = fractureStrain, m.fracture.spall = spallStrength, m.fracture.pairStress = pairStrength, m.fracture.mises = fractureStress, m.fracture.ratio = strengthRatio;
+	m.viscosity = { viscosityLinear, viscosityQuadratic };
+	m.friction  = std::tan(frictionAngle);
+	mca::validate(m, name);
+	pick("strengthDistribution", strengthDistribution, { "uniform", "normal", "weibull" });
+	if (!(strengthSpread >= 0 && strengthSpread < 0.5)) throw mca::Error("material '" + name + "': strengthSpread = " + std::to_string(strengthSpread) + " must be in [0, 0.5).");
+	return m;
+}
+
+Real McaMat::yieldAt(Real eqps, Real rate, Real temperature) const
+{
+	const mca::Material m = toMaterial();
+	Real                Y = 0;
+	mca::dispatch(m.yield.kind, [&](auto kind) {
+		Y = mca::staticYield<kind.value>(m.yield, eqps, temperature).stress;
+		if (kind.value == mca::YieldKind::johnsonCook) Y *= 1. + m.yield.C * std::log(std::max(rate / m.yield.rate0, 1.));
+	});
+	return Y;
+}
+
+Real McaMat::pressureAt(Real volumeRatio) const { return mca::pressure(toMaterial().eos, volumeRatio - 1.); }
+
+void McaMat::postLoad(McaMat&)
+{
+	const Real K = density * bulkSoundSpeed * bulkSoundSpeed, G = shearModulus;
+	if (K > 0 && G >= 0) young = 9. * K * G / (3. * K + G), poisson = (3. * K - 2. * G) / (2. * (3. * K + G));
+}
+} // namespace yade

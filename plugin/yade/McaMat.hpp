@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+#include <core/State.hpp>
+#include <pkg/common/ElastMat.hpp>
+#include "kernels/material.hpp"
+
+namespace yade {
+
+class McaLawState : public Serializable {
+public:
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS(McaLawState, Serializable, "What :yref:`McaDensity` keeps of an automaton from step to step.",
+		((int, flags, 0, Attr::readonly, "bits 0-5: link k holds; 8-13: it counts half; 16-21: it once held; 24: the automaton may touch something"))
+		((vector<int>, partner, , Attr::readonly, "body at the other end of link k; -1: never linked [6]"))
+		((Real, cell, 0, Attr::readonly, "volume at rest, Omega0 times weight [m2]"))
+		((Real, invN, 0, Attr::readonly, "1 / number of slots [-]"))
+		((Real, rest, 0, Attr::readonly, "sum of the volume rule at rest [-]"))
+		((Real, offset, 0, Attr::readonly, "affine rule: J = offset det F; 0: too few links to have a volume [-]"))
+		((Real, dTheta, 0, Attr::readonly, "last increment of the volume strain [-]"))
+		((Real, txx, 0, Attr::readonly, "affine rule: link k is pushed by T e_k [N/m]"))
+		((Real, txy, 0, Attr::readonly, "see txx [N/m]"))
+		((Real, tyx, 0, Attr::readonly, "see txx [N/m]"))
+		((Real, tyy, 0, Attr::readonly, "see txx [N/m]"))
+		((Real, share, 0, Attr::readonly, "pressure share of rule (6), of contacts in the affine rule [N/m]"))
+		((int, rule, 0, Attr::readonly, "volume rule: 0 affine, 1 inversePower, 2 meanDistance"))
+		((Real, contactSum, 0, Attr::readonly, "volume terms of the contacts [-]"))
+		((Real, criterion, 0, Attr::readonly, "largest fracture criterion over its limit [-]; a pair breaks at a mean of 1"))
+	)
+	// clang-format on
+};
+REGISTER_SERIALIZABLE(McaLawState);
+
+class McaState : public State {
+public:
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR(McaState, State, "State of an automaton. :yref:`McaEngine` fills it when it writes back to the bodies.",
+		((Real, pressure, 0, , "pressure, positive in compression [Pa]"))
+		((Real, volumeRatio, 1, , "J = volume / volume at rest [-]"))
+		((Real, equivalentStress, 0, , "Mises stress [Pa]"))
+		((Real, plasticStrain, 0, , "equivalent plastic strain [-]; read at the start as initial hardening"))
+		((Real, temperature, 298, , "temperature of the Johnson-Cook law [K]"))
+		((Real, stressZZ, 0, , "out-of-plane deviatoric stress [Pa]"))
+		((Real, dissipated, 0, , "internal energy per mass, kept for eos mieGruneisen [J/kg]"))
+		((Real, strength, 0, , "factor on the strengths of the material [-]; 0: drawn by the engine from the material's distribution and the engine's seed"))
+		((int, links, 0, , "links that hold [-]"))
+		((int, brokenLinks, 0, , "links that broke [-]"))
+		((shared_ptr<McaLawState>, law, , Attr::hidden, "what :yref:`McaDensity` keeps of the automaton; empty with McaEngine"))
+		,
+		createIndex();
+	)
+	// clang-format on
+	REGISTER_CLASS_INDEX(McaState, State);
+};
+REGISTER_SERIALIZABLE(McaState);
+
+class McaMat : public FrictMat {
+public:
+	shared_ptr<State> newAssocState() const override { return shared_ptr<State>(new McaState); }
+	bool              stateTypeOk(State* s) const override { return dynamic_cast<McaState*>(s) != nullptr; }
+	/// Constants for the solvers; throws mca::Error naming the constant that is out of range.
+	mca::Material toMaterial() const;
+	Real          longitudinalSpeed() const { return toMaterial().cP(); }
+	Real          shearSpeed() const { return toMaterial().cS(); }
+	Real          yieldAt(Real eqps, Real rate, Real temperature) const;
+	Real          pressureAt(Real volumeRatio) const;
+	void          postLoad(McaMat&);
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(McaMat, FrictMat,
+		"Material of automata and of the Lagrangian grid: shock-adiabat equation of state, plasticity, fracture, contact, viscosity. "
+		"Density [kg/m3] and frictionAngle [rad] are those of :yref:`FrictMat`; young and poisson are set from the constants below.",
+		((Real, bulkSoundSpeed, 0, Attr::triggerPostLoad, "c0 of the shock adiabat D = c0 + b U [m/s]; bulk modulus K = density c0^2"))
+		((Real, hugoniotSlope, 0, , "b of the shock adiabat [-]; 0: linear"))
+		((Real, gruneisen, 0, , "Grueneisen parameter [-] for eos 'mieGruneisen'"))
+		((string, eos, "shockAdiabat", , "'shockAdiabat', 'linear' (b is ignored) or 'mieGruneisen'"))
+		((Real, shearModulus, 0, Attr::triggerPostLoad, "G [Pa]"))
+		((string, yieldModel, "elastic", , "'elastic', 'perfect', 'linearHardening' or 'johnsonCook'"))
+		((Real, yieldStress, std::numeric_limits<Real>::infinity(), , "initial yield stress; Johnson-Cook A [Pa]"))
+		((Real, hardeningModulus, 0, , "dY/d(plastic strain) of linearHardening; Johnson-Cook B [Pa]"))
+		((Real, hardeningExponent, 1, , "Johnson-Cook n [-]"))
+		((Real, rateCoefficient, 0, , "Johnson-Cook C [-]"))
+		((Real, referenceRate, 1, , "Johnson-Cook reference strain rate [1/s]"))
+		((Real, thermalSoftening, 1, , "Johnson-Cook m [-]"))
+		((Real, meltTemperature, std::numeric_limits<Real>::infinity(), , "melting temperature [K]"))
+		((Real, referenceTemperature, 298, , "initial and reference temperature [K]"))
+		((Real, heatCapacity, 0, , "specific heat [J/kg/K]; 0: no heating"))
+		((Real, taylorQuinney, 0.9, , "share of plastic work that becomes heat [-] (Taylor and Quinney 1934)"))
+		((Real, fractureStrain, std::numeric_limits<Real>::infinity(), , "plastic strain of a pair at which it unlinks [-]"))
+		((Real, spallStrength, std::numeric_limits<Real>::infinity(), , "tensile pressure at which a pair unlinks [Pa]"))
+		((Real, pairStrength, std::numeric_limits<Real>::infinity(), , "tensile normal stress of a pair at which it unlinks [Pa]"))
+		((Real, fractureStress, std::numeric_limits<Real>::infinity(), , "Mises stress at which a pair unlinks; with strengthRatio a > 1 the two-parameter criterion 0.5 (a+1) sigma_eq + 1.5 (a-1) sigma_mean [Pa]"))
+		((Real, strengthRatio, 1, , "a = compressive / tensile strength of the two-parameter criterion [-]; 1: Mises"))
+		((Real, strengthSpread, 0, , "relative standard deviation of the strengths from automaton to automaton [-]"))
+		((string, strengthDistribution, "uniform", , "'uniform', 'normal' (cut at 3 deviations) or 'weibull'"))
+		((Real, viscosityLinear, 0.25, , "linear artificial viscosity c1 [-]"))
+		((Real, viscosityQuadratic, 1.2, , "quadratic artificial viscosity c2 [-]"))
+		,
+		createIndex();
+		,
+		.add_property("cP", &McaMat::longitudinalSpeed, "Longitudinal wave speed at rest [m/s].")
+		.add_property("cS", &McaMat::shearSpeed, "Shear wave speed at rest [m/s].")
+		.def("flowStress", &McaMat::yieldAt, (py::arg("plasticStrain"), py::arg("rate") = 1., py::arg("temperature") = 298.), "Yield stress [Pa] at plastic strain [-], strain rate [1/s] and temperature [K] (Johnson and Cook 1983).")
+		.def("pressure", &McaMat::pressureAt, (py::arg("volumeRatio")), "Pressure [Pa] at J = volume / volume at rest [-] on the shock adiabat; linear in tension.")
+	)
+	// clang-format on
+	REGISTER_CLASS_INDEX(McaMat, FrictMat);
+};
+REGISTER_SERIALIZABLE(McaMat);
+} // namespace yade

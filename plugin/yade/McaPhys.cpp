@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "McaPhys.hpp"
+#include "McaCast.hpp"
+#include "automata/solver.hpp"
+#include <core/Scene.hpp>
+#include <lib/base/Logging.hpp>
+#include <pkg/common/Sphere.hpp>
+#include <pkg/dem/ScGeom.hpp>
+
+namespace yade {
+YADE_PLUGIN((McaPhys)(Ip2_McaMat_McaMat_McaPhys)(Ip2_FrictMat_McaMat_McaPhys)(Law2_ScGeom_McaPhys_Mca));
+
+using mca::Lattice;
+using mca::sqr;
+using mca::VolumeRule;
+
+bool McaPhys::pushes(int side, Real r2) const { return r2 < mca::automata::touchShare * sqr(rest[side]) && rest[side] >= mca::automata::collapsed * d; }
+
+bool McaPhys::mayTouch(const Body& a, const McaLawState& la, const Body& b, const McaLawState& lb)
+{
+	const bool ea = la.flags & mca::automata::exposedBit, eb = lb.flags & mca::automata::exposedBit;
+	const auto foreign = [&](const McaLawState& l) { return __builtin_popcount(l.flags & mca::automata::linkBits) < 3 || a.groupMask != b.groupMask; };
+	return (ea && eb) || (ea && foreign(la)) || (eb && foreign(lb));
+}
+
+void McaPhys::startContact(Real r)
+{
+	active = true;
+	rest   = Vector2r::Constant(std::min(d, r));
+}
+
+namespace {
+	/// The working state if the body is an automaton, else null.
+	McaLawState* lawState(const Body& b)
+	{
+		auto* m = castTo<McaState>(b.state.get());
+		return m && castTo<Sphere>(b.shape.get()) ? m->law.get() : nullptr;
+	}
+	/// dx, dy from the first to the second body [m]
+	Vector2r between(const Body& a, const Body& b) { return Vector2r(b.state->se3.position[0] - a.state->se3.position[0], b.state->se3.position[1] - a.state->se3.position[1]); }
+
+	void makeWall(McaPhys& p, const McaMat& m, Real otherAngle, Real d)
+	{
+		const Real K = m.density * sqr(m.bulkSoundSpeed), width = Lattice<2>::width(d);
+		p.wall     = true;
+		p.d        = d;
+		p.kn       = (K + m.shearModulus * (4. / 3.)) * width * 2. / d;
+		p.ks       = m.shearModulus * width * 2. / d;
+		p.friction = std::tan(std::min(m.frictionAngle, otherAngle));
+	}
+} // namespace
+
+void Ip2_McaMat_McaMat_McaPhys::go(const shared_ptr<Material>& m1, const shared_ptr<Material>& m2, const shared_ptr<Interaction>& I)
+{
+	if (I->phys) return;
+	const Body &            A = *scene->bodies->body[I->getId1()], &B = *scene->bodies->body[I->getId2()];
+	const auto &            a = static_cast<const McaMat&>(*m1), &b = static_cast<const McaMat&>(*m2);
+	const shared_ptr<McaPhys> p(new McaPhys);
+	I->phys       = p;
+	const auto *sa = castTo<Sphere>(A.shape.get()), *sb = castTo<Sphere>(B.shape.get());
+	if (!lawState(A) || !lawState(B)) {
+		if (sa && sb) LOG_ERROR("automata " << A.id << " and " << B.id << ": McaDensity has not seen them; put it before InteractionLoop in O.engines.");
+		makeWall(*p, sa ? a : b, (sa ? b : a).frictionAngle, 2. * (sa ? sa : sb)->radius);
+		return;
+	}
+	const Real da = 2. * sa->radius, db = 2. * sb->radius;
+	p->d             = 0.5 * (da + db);
+	p->share         = da / (da + db);
+	p->twoG          = a.shearModulus > 0 && b.shearModulus > 0 ? 2. / (p->share / a.shearModulus + (1. - p->share) / b.shearModulus) : 0.;
+	p->friction      = std::min(std::tan(a.frictionAngle), std::tan(b.frictionAngle));
+	p->viscLinear    = 0.5 * (a.viscosityLinear * a.density * a.bulkSoundSpeed + b.viscosityLinear * b.density * b.bulkSoundSpeed);
+	p->viscQuadratic = 0.5 * (a.viscosityQuadratic * a.density + b.viscosityQuadratic * b.density);
+	const Vector2r x = between(A, B);
+	if (McaPhys::mayTouch(A, *lawState(A), B, *lawState(B))) p->startContact(x.norm());
+}
+
+void Ip2_FrictMat_McaMat_McaPhys::go(const shared_ptr<Material>& m1, const shared_ptr<Material>& m2, const shared_ptr<Interaction>& I)
+{
+	if (I->phys) return;
+	const Body &              A = *scene->bodies->body[I->getId1()], &B = *scene->bodies->body[I->getId2()];
+	const Body&               automaton = lawState(A) ? A : B;
+	const auto*               sphere    = castTo<Sphere>(automaton.shape.get());
+	const shared_ptr<McaPhys> p(new McaPhys);
+	I->phys = p;
+	makeWall(*p, static_cast<const McaMat&>(*m2), static_cast<const FrictMat&>(*m1).frictionAngle, sphere ? 2. * sphere->radius : 0.);
+}
+
+namespace {
+	bool wallForce(const ScGeom& g, McaPhys& p, const Body& A, const Body& B)
+	{
+		const bool touches = g.penetrationDepth > 0;
+		p.force            = Vector3r::Zero();
+		p.torque           = Vector2r::Zero();
+		p.normalForce      = p.kn * std::max(g.penetrationDepth, Real(0)) * g.normal;
+		g.rotate(p.shearForce);
+		p.shearForce -= p.ks * g.shearInc;
+		const Real most = p.friction * p.normalForce.norm(), now = p.shearForce.norm();
+		if (now > most) p.shearForce *= most / now;
+		if (!touches) {
+			p.shearForce = Vector3r::Zero();
+			return false;
+		}
+		p.force = -p.normalForce - p.shearForce;
+		for (int side = 0; side < 2; side++) {
+			const Vector3r arm = g.contactPoint - (side ? B : A).state->se3.position, f = side ? Vector3r(-p.force) : p.force;
+			p.torque[side]     = arm[0] * f[1] - arm[1] * f[0];
+		}
+		return true;
+	}
+} // namespace
+
+bool Law2_ScGeom_McaPhys_Mca::go(shared_ptr<IGeom>& geom, shared_ptr<IPhys>& phys, Interaction* I)
+{
+	auto&       p = static_cast<McaPhys&>(*phys);
+	const Body &A = *scene->bodies->body[I->getId1()], &B = *scene->bodies->body[I->getId2()];
+	if (p.wall) return wallForce(static_cast<const ScGeom&>(*geom), p, A, B);
+
+	const McaLawState &a = *lawState(A), &b = *lawState(B);
+	const State &      sa = *A.state, &sb = *B.state;
+	const Real         dx = sb.se3.position[0] - sa.se3.position[0], dy = sb.se3.position[1] - sa.se3.position[1], r2 = dx * dx + dy * dy, inv = 1. / r2;
+	p.force = p.normalForce = p.shearForce = Vector3r::Zero();
+	p.torque = Vector2r::Zero(), p.heatRate = 0;
+	if (!p.linked && !(p.active && p.touching(r2))) return p.linked || r2 < sqr(range * p.d); // returning false erases the pair
+
+	const Real w    = p.linked && p.half ? 0.5 : 1.;
+	const Real area = 0.5 * w * Lattice<2>::width(p.d) * p.d; // S r = S0 d J: exactly the Cauchy stress in any homogeneous deformation
+	const Real Sn = area * (p.s[0] + p.s[1]), St = area * (p.tau[0] + p.tau[1]);
+	const Real along = dx * (sb.vel[0] - sa.vel[0]) + dy * (sb.vel[1] - sa.vel[1]);
+	const Real q     = w * mca::viscousCoefficient(along, inv, p.viscLinear, p.viscQuadratic, Lattice<2>::width(p.d));
+	Real       px, py; // the pressure pushes the first body by -(px, py)
+	if (p.linked && a.rule == int(VolumeRule::affine)) {
+		px = (a.txx + b.txx) * mca::linkX[p.slot] + (a.txy + b.txy) * mca::linkY[p.slot];
+		py = (a.tyx + b.tyx) * mca::linkX[p.slot] + (a.tyy + b.tyy) * mca::linkY[p.slot];
+	} else {
+		const bool mean  = a.rule == int(VolumeRule::meanDistance);
+		const auto shape = [&](Real d) { return mean ? mca::pressureShape<VolumeRule::meanDistance, 2>(d, inv) : mca::pressureShape<VolumeRule::inversePower, 2>(d, inv); };
+		const Real pr = p.linked ? w * (a.share + b.share) * shape(p.d) : (p.pushes(0, r2) ? a.share * shape(p.rest[0]) : 0.) + (p.pushes(1, r2) ? b.share * shape(p.rest[1]) : 0.);
+		px = pr * dx, py = pr * dy;
+	}
+	const Real al = Sn * inv + q, ac = St * inv;
+	p.force       = Vector3r(al * dx - ac * dy - px, al * dy + ac * dx - py, 0);
+	p.torque      = Vector2r(p.share, 1. - p.share) * St;
+	p.heatRate    = q * along;
+	const Vector3r n(dx * std::sqrt(inv), dy * std::sqrt(inv), 0);
+	p.normalForce = -p.force.dot(n) * n;
+	p.shearForce  = -p.force - p.normalForce;
+	return true;
+}
+} // namespace yade

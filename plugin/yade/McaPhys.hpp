@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The pair of automata in YADE's InteractionLoop: physics, its functors, and the law that turns pair stresses into forces.
+#pragma once
+#include "McaMat.hpp"
+#include <core/Dispatching.hpp>
+#include <pkg/common/NormShearPhys.hpp>
+
+namespace yade {
+
+class McaPhys : public NormShearPhys {
+public:
+	/// This side pushes: it is closer than its rest distance, which is not that of automata that slid into each other.
+	bool pushes(int side, Real r2) const;
+	bool touching(Real r2) const { return pushes(0, r2) || pushes(1, r2); }
+	/// Whether two automata are tested for contact: both have a free side, or one has and is no part of the other's body (debris, or another mask).
+	static bool mayTouch(const Body& a, const McaLawState& la, const Body& b, const McaLawState& lb);
+	/// Where two that are found closer than their diameters start without push [m].
+	void startContact(Real r);
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR(McaPhys, NormShearPhys,
+		"Pair of two automata, or of an automaton and a body that is none (facet, wall, box, grain). Pairs of numbers belong to the first and second body. "
+		"normalForce and shearForce are the parts of the force on the second body along and across the line of centres [N/m].",
+		((bool, linked, false, Attr::readonly, "the link holds; only McaDensity makes links, so a broken pair stays broken"))
+		((bool, active, false, Attr::readonly, "not linked, and both automata may touch something"))
+		((bool, wall, false, Attr::readonly, "one body is no automaton: penalty contact kn, ks with Coulomb friction"))
+		((bool, half, false, Attr::readonly, "link along a weighted rim, which counts half"))
+		((int, slot, 0, Attr::readonly, "place of the link around the first body, 60 slot degrees in the frame of the packing; (slot + 3) % 6 around the second"))
+		((Vector2r, s, Vector2r::Zero(), Attr::readonly, "J times normal deviatoric stress of each side [Pa]"))
+		((Vector2r, tau, Vector2r::Zero(), Attr::readonly, "J times shear stress of each side [Pa]"))
+		((Vector2r, rest, Vector2r::Zero(), Attr::readonly, "contact: rest distance of each side [m]"))
+		((Real, d, 0, Attr::readonly, "mean diameter [m]"))
+		((Real, share, 0.5, Attr::readonly, "arm of the first body over the distance [-]"))
+		((Real, twoG, 0, Attr::readonly, "pair shear stiffness 2G, in series [Pa]"))
+		((Real, friction, 0, Attr::readonly, "Coulomb coefficient [-], the smaller of both"))
+		((Real, viscLinear, 0, Attr::readonly, "rho c1 c, mean of both [Pa s/m]"))
+		((Real, viscQuadratic, 0, Attr::readonly, "rho c2, mean of both [Pa s2/m2]"))
+		((Vector3r, force, Vector3r::Zero(), Attr::readonly, "force of this step on the first body, the second has its negative [N/m]"))
+		((Vector2r, torque, Vector2r::Zero(), Attr::readonly, "torque about z on each body [N]"))
+		((Real, heatRate, 0, Attr::readonly, "power of the pair viscosity [W/m]"))
+		,
+		createIndex();
+	)
+	// clang-format on
+	REGISTER_CLASS_INDEX(McaPhys, NormShearPhys);
+};
+REGISTER_SERIALIZABLE(McaPhys);
+
+class Ip2_McaMat_McaMat_McaPhys : public IPhysFunctor {
+public:
+	void go(const shared_ptr<Material>& m1, const shared_ptr<Material>& m2, const shared_ptr<Interaction>& I) override;
+	FUNCTOR2D(McaMat, McaMat);
+	// clang-format off
+	YADE_CLASS_BASE_DOC(Ip2_McaMat_McaMat_McaPhys, IPhysFunctor, "Makes :yref:`McaPhys` of two automata. A body with McaMat that is no Sphere is a wall.")
+	// clang-format on
+};
+REGISTER_SERIALIZABLE(Ip2_McaMat_McaMat_McaPhys);
+
+class Ip2_FrictMat_McaMat_McaPhys : public IPhysFunctor {
+public:
+	void go(const shared_ptr<Material>& m1, const shared_ptr<Material>& m2, const shared_ptr<Interaction>& I) override;
+	FUNCTOR2D(FrictMat, McaMat);
+	DEFINE_FUNCTOR_ORDER_2D(FrictMat, McaMat);
+	// clang-format off
+	YADE_CLASS_BASE_DOC(Ip2_FrictMat_McaMat_McaPhys, IPhysFunctor,
+		"Makes :yref:`McaPhys` of an automaton and a facet, wall, box or grain of FrictMat: a penalty contact of the automaton's moduli, kn = (K + 4G/3) S0/(d/2) and "
+		"ks = G S0/(d/2) [N/m per m], with the smaller friction of both. The other body is taken as rigid.")
+	// clang-format on
+};
+REGISTER_SERIALIZABLE(Ip2_FrictMat_McaMat_McaPhys);
+
+class Law2_ScGeom_McaPhys_Mca : public LawFunctor {
+public:
+	bool go(shared_ptr<IGeom>& geom, shared_ptr<IPhys>& phys, Interaction* I) override;
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS(Law2_ScGeom_McaPhys_Mca, LawFunctor,
+		"Force of a pair from the pressures and pair stresses that :yref:`McaDensity` has found, and its viscosity; of an automaton and a wall from the overlap. It leaves the force in "
+		"the pair, :yref:`McaForces` adds it to the bodies in a fixed order. Pairs that are farther apart than range are forgotten.",
+		((Real, range, 1.45, , "distance at which a contact is given up, over the diameter [-]; above the interactionDetectionFactor of Ig2_Sphere_Sphere_ScGeom"))
+	)
+	// clang-format on
+	FUNCTOR2D(ScGeom, McaPhys);
+};
+REGISTER_SERIALIZABLE(Law2_ScGeom_McaPhys_Mca);
+} // namespace yade

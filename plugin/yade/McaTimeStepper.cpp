@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "McaTimeStepper.hpp"
+#include "McaDensity.hpp"
+#include "McaEngine.hpp"
+#include "McaGridEngine.hpp"
+#include <core/Scene.hpp>
+#include <pkg/common/Sphere.hpp>
+
+namespace yade {
+YADE_PLUGIN((McaTimeStepper));
+
+void McaTimeStepper::computeTimeStep(Scene* scene)
+{
+	const auto need = [](const char* name, Real v, bool ok, const char* range) {
+		if (!ok) throw mca::Error(string("McaTimeStepper: ") + name + " = " + std::to_string(v) + " must be " + range + ".");
+	};
+	need("factor", factor, factor > 0 && factor <= 1, "above 0 and at most 1");
+	need("growth", growth, growth > 1, "above 1");
+	need("largest", largest, largest > 0, "above 0");
+	Real   found = std::numeric_limits<Real>::infinity();
+	string who;
+	bool   automata = false;
+	for (const auto& e : scene->engines) {
+		auto* s = dynamic_cast<McaSolverEngine*>(e.get());
+		if (!s || s->dead) continue;
+		s->prepare(scene);
+		if (auto* a = dynamic_cast<McaEngine*>(s)) a->adaptive = false, automata = true;
+		if (auto* g = dynamic_cast<McaGridEngine*>(s)) g->adaptive = false;
+		if (dynamic_cast<McaDensity*>(s)) automata = true;
+		const Real t = s->criticalTimeStep();
+		if (t < found) found = t, who = s->getClassName() + (s->label.empty() ? "" : " " + s->label);
+	}
+	if (!automata) // automata that no engine of ours has taken yet
+		for (const auto& b : scene->bodies->body) {
+			const auto* m = b ? dynamic_cast<const McaMat*>(b->material.get()) : nullptr;
+			const auto* r = m ? dynamic_cast<const Sphere*>(b->shape.get()) : nullptr;
+			const auto* s = r ? dynamic_cast<const McaState*>(b->state.get()) : nullptr;
+			if (!s) continue;
+			const Real J = s->volumeRatio, d = 2. * r->radius * std::min(Real(1), J);
+			const auto c = m->toMaterial();
+			const Real t = mca::stableStep(d, mca::longitudinalSpeed(c.eos, c.G, J - 1.), c.cS(), c.viscosity.linear);
+			if (t < found) found = t, who = "body " + std::to_string(b->id);
+		}
+	if (!std::isfinite(found)) return; // nothing of ours in the scene
+	limit = found, limitedBy = who;
+	const Real dt = std::min({ factor * limit, largest, previous > 0 ? growth * previous : largest });
+	scene->dt = previous = dt;
+}
+} // namespace yade

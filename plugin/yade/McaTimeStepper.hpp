@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+#include <core/TimeStepper.hpp>
+
+namespace yade {
+class McaTimeStepper : public TimeStepper {
+public:
+	void computeTimeStep(Scene* scene) override;
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS(McaTimeStepper, TimeStepper,
+		"Sets O.dt to the smallest of all stable steps times a factor, growing at most by a factor from step to step: those of :yref:`McaEngine`, :yref:`McaDensity` and :yref:`McaGridEngine`, and of the bodies of "
+		":yref:`McaMat` when none of them has them. Tied nodes need no smaller one: their mass is at least that of both sides together. "
+		"Put it first in O.engines. It switches the engines' own `adaptive` off.",
+		((Real, factor, 0.4, , "share of the largest stable time step [-], above 0 and at most 1"))
+		((Real, growth, 1.1, , "largest ratio of a step to the one before [-], above 1"))
+		((Real, largest, std::numeric_limits<Real>::infinity(), , "upper bound of O.dt [s]"))
+		((Real, limit, 0, Attr::readonly, "largest stable step found [s]"))
+		((string, limitedBy, "", Attr::readonly, "what has set `limit`: class and label of an engine, or a body"))
+		((Real, previous, 0, Attr::hidden, "step set last [s]"))
+	)
+	// clang-format on
+};
+REGISTER_SERIALIZABLE(McaTimeStepper);
+} // namespace yade

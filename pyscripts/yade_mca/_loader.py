@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Finds the compiled part of the plugin, checks that it is whole and fits this YADE, and loads it. Each refusal is an ImportError with a remedy."""
+import importlib.machinery
+import importlib.util
+import json
+import os
+import sys
+import types
+import zlib
+
+from yade_mca import _elf
+
+REINSTALL_YADE = 'apt-get install --reinstall yade libyade=2023.02a-1'
+REBUILD = 'delete the folder build and run pyscripts/setup, or reinstall the package yade-mca'
+
+
+def setThreadPolicy():
+	"""Threads of OpenMP that wait sleep instead of spinning, unless the user has said otherwise; without effect when YADE was loaded before."""
+	if 'yade' not in sys.modules:
+		os.environ.setdefault('OMP_WAIT_POLICY', 'passive')
+
+
+def refuse(what, remedy):
+	raise ImportError('yade_mca: %s. What to do: %s' % (what, remedy)) from None
+
+
+def libraryFolder():
+	"""Folder of the compiled part: $YADE_MCA_LIB, or lib/ inside this package (installed), or the build folder of the source tree."""
+	here = os.path.dirname(os.path.abspath(__file__))
+	given = os.environ.get('YADE_MCA_LIB')
+	candidates = [given] if given else [os.path.join(here, 'lib'), os.path.join(here, '..', '..', 'build', 'yade_mca_lib')]
+	for folder in candidates:
+		if os.path.exists(os.path.join(folder, 'manifest.json')):
+			return os.path.abspath(folder)
+	refuse('the compiled part is not built (looked in %s)' % ', '.join(os.path.abspath(c) for c in candidates), 'run pyscripts/setup, or set YADE_MCA_LIB to its folder')
+
+
+def readManifest(folder):
+	"""What the build wrote down about itself. Raises ImportError when it cannot be read."""
+	try:
+		with open(os.path.join(folder, 'manifest.json')) as file:
+			return json.load(file)
+	except (OSError, ValueError) as e:
+		refuse('manifest.json cannot be read (%s)' % e, REBUILD)
+
+
+def checkPython(manifest):
+	found = '%d.%d' % sys.version_info[:2]
+	if found != manifest['python']:
+		refuse(
+		        'this is Python %s (%s), the plugin and YADE are for %s' % (found, sys.executable, manifest['python']),
+		        'use /usr/bin/python3, or run the script with yade or yade-mca'
+		)
+
+
+def checkFiles(folder, manifest):
+	"""Each library is the one that was built, to the byte; a damaged one would end the process, not the import."""
+	for name, known in manifest['files'].items():
+		try:
+			with open(os.path.join(folder, name), 'rb') as file:
+				data = file.read()
+		except OSError as e:
+			refuse('%s cannot be read (%s)' % (name, e.strerror), REBUILD)
+		if len(data) != known['size']: refuse('%s has %d bytes instead of %d: it is cut short or of another build' % (name, len(data), known['size']), REBUILD)
+		if zlib.crc32(data) != known['crc32']: refuse('%s is damaged (its checksum differs)' % name, REBUILD)
+
+
+def checkYadeLibraries(manifest):
+	"""YADE's libraries are there, whole, and those the plugin was built against; before they are loaded, if they are not yet."""
+	folder = manifest['yadeLibDir']
+	if 'yade.config' in sys.modules:
+		config = sys.modules['yade.config']
+		folder = config.libDir
+		if config.version != manifest['yade']: refuse('this is YADE %s, the plugin is for %s' % (config.version, manifest['yade']), 'apt-get install yade=2023.02a-1')
+		# the builds of other precision have other features but also another suffix
+		if not os.path.basename(folder.rstrip('/')).endswith('-double'):
+			refuse('this YADE (%s) is not the double precision build' % folder, 'start `yade` or `yade-mca`, not yade-longdouble, yade-float128 or yade-mpfr150')
+	if not os.path.exists(os.path.join(folder, 'libyade.so')): refuse('YADE is not installed (no libyade.so in %s)' % folder, 'apt-get install yade=2023.02a-1')
+	for name, known in manifest['yadeBuildIds'].items():
+		path = os.path.join(folder, name)
+		try:
+			_elf.checkWhole(path)
+			found = _elf.buildId(path)
+		except (OSError, ValueError) as e:
+			refuse("YADE's own library cannot be used: %s" % e, REINSTALL_YADE)
+		if found != known and not os.environ.get('YADE_MCA_OTHER_BUILD'):
+			refuse(
+			        "YADE's library %s is another build (%s) than the one the plugin was built with (%s)" % (path, found or 'no build-id', known),
+			        '%s; or rebuild the plugin here (pyscripts/setup); or set YADE_MCA_OTHER_BUILD=1 to rely on the comparison of classes alone' % REINSTALL_YADE
+			)
+
+
+def importYade(manifest):
+	folder = os.path.join(manifest['yadeLibDir'], 'py')
+	if 'yade' not in sys.modules and folder not in sys.path: sys.path.append(folder)
+	try:
+		import yade.config
+		import yade.system
+		import yade.wrapper
+	except ImportError as e:
+		if sys.prefix != '/usr': refuse('YADE cannot be imported into %s (%s)' % (sys.executable, e), "use YADE's interpreter, /usr/bin/python3, or start yade or yade-mca")
+		refuse('YADE cannot be imported (%s)' % e, REINSTALL_YADE)
+
+
+def openExtension(name, path):
+	"""Load the extension module `name` from the file `path`; its guard runs first and raises ImportError when it does not fit."""
+	flags = sys.getdlopenflags()
+	# YADE sets RTLD_GLOBAL for all later imports, with which weak symbols of different plugins would replace each other
+	sys.setdlopenflags(os.RTLD_NOW | os.RTLD_LOCAL)
+	try:
+		spec = importlib.machinery.ModuleSpec(name, importlib.machinery.ExtensionFileLoader(name, str(path)), origin=str(path))
+		module = importlib.util.module_from_spec(spec)
+	except ImportError as e:
+		if 'undefined symbol' in str(e): refuse('the YADE in this process lacks a function the plugin needs (%s)' % e, 'apt-get install yade=2023.02a-1 libyade=2023.02a-1')
+		raise
+	finally:
+		sys.setdlopenflags(flags)
+	sys.modules[name] = module
+	return module
+
+
+def insideYade():
+	"""The classes where YADE was built from source with the plugin in its tree (patches/) and has loaded them itself; None with the stock package."""
+	if 'yade.wrapper' not in sys.modules or '_yade_mca' in sys.modules: return None
+	wrapper = sys.modules['yade.wrapper']
+	if not hasattr(wrapper, 'McaInfo'): return None
+	module = types.ModuleType('_yade_mca', 'built into this YADE')
+	module.classes = [name for name in dir(wrapper) if 'Mca' in name]
+	module.guardChecks = 0  # compiled with YADE's own headers: nothing to compare
+	return module
+
+
+def load():
+	"""(extension module, manifest). Raises ImportError with a remedy; YADE, if it was running, goes on without the plugin."""
+	builtIn = insideYade()
+	if builtIn: return builtIn, {'version': 'inside YADE', 'commit': None}
+	folder = libraryFolder()
+	manifest = readManifest(folder)
+	checkPython(manifest)
+	checkFiles(folder, manifest)
+	checkYadeLibraries(manifest)
+	importYade(manifest)
+	checkYadeLibraries(manifest)
+	return openExtension('_yade_mca', os.path.join(folder, '_yade_mca.so')), manifest
+
+
+def publish(classes, package):
+	"""Make the new names known where YADE's own are: here, in yade, yade.utils, and for scripts and the graphical interface in builtins."""
+	import builtins
+	import yade
+	import yade.system
+	import yade.utils
+	for name in classes:
+		cls = getattr(yade.wrapper, name)
+		package[name] = cls
+		for module in (yade, yade.utils, builtins):
+			setattr(module, name, cls)
+	yade.system._allSerializables |= set(classes)

@@ -1,0 +1,283 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Library of materials: literature constants with their sources, as records and as YADE materials.
+
+    >>> from yade_mca import materials
+    >>> materials.names()
+    ['304SS', '4340', ...]
+    >>> rod = materials.get('WHA_JC')                               # a record, SI units
+    >>> soft = materials.get('WHA_JC', yieldModel='linearHardening')   # a simpler variant of the same metal
+    >>> m = materials.mcaMat('4340', fractureStrain=1.0)            # a yade McaMat, ready for O.materials.append
+
+Everything is SI: kg, m, s, Pa, K. The numbers stand in ``data/materials.csv``, whose head names the sources. The bulk modulus of
+a record is rho0 c0^2, the slope of its shock adiabat at rest; a static value from another source would make two numbers of one.
+"""
+import csv
+import difflib
+import math
+from dataclasses import dataclass, fields, replace
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+__all__ = ['Material', 'MaterialError', 'names', 'get', 'mcaMat', 'MCAMAT_ATTRIBUTES', 'YIELD_MODELS', 'EOS_MODELS']
+
+DATA = Path(__file__).with_name('data') / 'materials.csv'
+EOS_MODELS = ('shockAdiabat', 'linear', 'mieGruneisen')
+YIELD_MODELS = ('elastic', 'perfect', 'linearHardening', 'johnsonCook')
+DISTRIBUTIONS = ('uniform', 'normal', 'weibull')
+#: plastic strain up to which the straight line of ``linearHardening`` is fitted to the full curve [-]
+FIT_STRAIN = 0.5
+
+
+class MaterialError(ValueError):
+	"""A material, attribute or value that the library cannot accept; the message says what is allowed."""
+
+
+@dataclass(frozen=True)
+class Material:
+	"""One set of constants of one metal. Attributes up to `viscosityQuadratic` carry the names of McaMat's attributes."""
+	name: str
+	density: float  #: at rest [kg/m3]
+	bulkSoundSpeed: float  #: c0 of the shock adiabat D = c0 + b U [m/s]
+	hugoniotSlope: float  #: b of the shock adiabat [-]
+	gruneisen: float  #: Grueneisen coefficient at rest [-]
+	shearModulus: float  #: [Pa]; nan where the source gives none
+	eos: str = 'shockAdiabat'  #: one of EOS_MODELS
+	yieldModel: str = 'elastic'  #: one of YIELD_MODELS
+	yieldStress: float = math.inf  #: initial yield stress; A of Johnson-Cook [Pa]
+	hardeningModulus: float = 0.0  #: slope of linear hardening, or B of Johnson-Cook [Pa]
+	hardeningExponent: float = 1.0  #: n of Johnson-Cook [-]
+	rateCoefficient: float = 0.0  #: C of Johnson-Cook [-]
+	referenceRate: float = 1.0  #: strain rate at which the static curve holds [1/s]
+	thermalSoftening: float = 1.0  #: m of Johnson-Cook [-]
+	meltTemperature: float = math.inf  #: [K]
+	referenceTemperature: float = 298.0  #: room temperature of the Johnson-Cook law [K]
+	heatCapacity: float = 0.0  #: [J/kg/K]
+	taylorQuinney: float = 0.9  #: share of plastic work that heats (Taylor & Quinney 1934) [-]
+	fractureStrain: float = math.inf  #: plastic strain at which a pair unlinks [-]
+	spallStrength: float = math.inf  #: tensile pressure at which a pair unlinks [Pa]
+	pairStrength: float = math.inf  #: tensile normal stress of a pair at which it unlinks [Pa]
+	fractureStress: float = math.inf  #: Mises stress at which a pair unlinks; see strengthRatio [Pa]
+	strengthRatio: float = 1.0  #: a = sigma_c/sigma_t of the two-parameter criterion 0.5 (a+1) sigma_eq + 1.5 (a-1) sigma_m; 1: Mises [-]
+	strengthSpread: float = 0.0  #: relative standard deviation of the strengths from automaton to automaton [-]
+	strengthDistribution: str = 'uniform'  #: one of DISTRIBUTIONS
+	frictionAngle: float = math.atan(0.1)  #: dry metal on metal at high sliding speed, coefficient of the order of 0.1 (Bowden & Freitag 1958) [rad]
+	viscosityLinear: float = 0.25  #: c1 of the pair viscosity [-]
+	viscosityQuadratic: float = 1.2  #: c2 of the pair viscosity [-]
+	# not attributes of McaMat
+	staticBulkModulus: float = math.nan  #: from another source, for information only [Pa]
+	johnsonCook: tuple = None  #: (A [Pa], B [Pa], n, C, m) or None
+	johnsonCookDamage: tuple = None  #: (D1 ... D5) or None [-]
+	steinbergGuinan: tuple = None  #: (Y0 [Pa], beta, n, Ymax [Pa]) or None
+	minimumPressure: float = 0.0  #: shock pressure from which on the adiabat holds [Pa]
+	eosSource: str = ''
+	strengthSource: str = ''
+
+	@property
+	def bulkModulus(self):
+		"""K = rho0 c0^2 [Pa]."""
+		return self.density * self.bulkSoundSpeed**2
+
+	@property
+	def poisson(self):
+		"""Poisson's ratio from K and G [-]."""
+		k, g = self.bulkModulus, self.shearModulus
+		return (3 * k - 2 * g) / (2 * (3 * k + g))
+
+	@property
+	def young(self):
+		"""Young's modulus [Pa]."""
+		k, g = self.bulkModulus, self.shearModulus
+		return 9 * k * g / (3 * k + g)
+
+	@property
+	def cP(self):
+		"""Longitudinal wave speed at rest [m/s]."""
+		return math.sqrt((self.bulkModulus + 4 * self.shearModulus / 3) / self.density)
+
+	@property
+	def cS(self):
+		"""Shear wave speed at rest [m/s]."""
+		return math.sqrt(self.shearModulus / self.density)
+
+	@property
+	def cR(self):
+		"""Speed of Rayleigh's surface wave [m/s]."""
+		from .exact import rayleighSpeed
+		return rayleighSpeed(self.cP, self.cS)
+
+	@property
+	def impedance(self):
+		"""Acoustic impedance rho cP of longitudinal waves [Pa s/m]."""
+		return self.density * self.cP
+
+	@property
+	def validTemperature(self):
+		"""(lowest, highest) temperature of the yield law [K]: Johnson-Cook is defined between room and melt temperature."""
+		return (self.referenceTemperature, self.meltTemperature)
+
+	@property
+	def validPressure(self):
+		"""(lowest, highest) pressure of the shock adiabat [Pa]; above, P(eps) grows without limit where 1 + b eps = 0."""
+		return (self.minimumPressure, math.inf)
+
+	@property
+	def validStrain(self):
+		"""(lowest, 0) volume strain J - 1 at which the shock adiabat is finite [-]: lowest = -1/b."""
+		return (-1 / self.hugoniotSlope if self.hugoniotSlope > 0 else -1.0, 0.0)
+
+	def flowStress(self, plasticStrain, rate=None, temperature=None):
+		"""Yield stress [Pa] of the record's yieldModel; plasticStrain [-], rate [1/s] and temperature [K] may be arrays.
+
+		Rate and temperature count in 'johnsonCook' only; None means the reference rate and temperature.
+		"""
+		e = np.asarray(plasticStrain, float)
+		if self.yieldModel == 'elastic':
+			return np.full_like(e, math.inf)
+		if self.yieldModel == 'perfect':
+			return np.full_like(e, self.yieldStress)
+		if self.yieldModel == 'linearHardening':
+			return self.yieldStress + self.hardeningModulus * e
+		y = self.yieldStress + self.hardeningModulus * e**self.hardeningExponent
+		if rate is not None:  # never below the static curve
+			y = y * (1 + self.rateCoefficient * np.log(np.maximum(np.asarray(rate, float) / self.referenceRate, 1.0)))
+		if temperature is not None:
+			t = (np.asarray(temperature, float) - self.referenceTemperature) / (self.meltTemperature - self.referenceTemperature)
+			y = y * (1 - np.clip(t, 0, 1)**self.thermalSoftening)
+		return y
+
+	def johnsonCookFractureStrain(self, triaxiality, rate=1.0, temperature=298.0):
+		"""Plastic strain at fracture by Johnson & Cook (1985) [-]; triaxiality = mean stress / Mises stress, tension positive.
+
+		For choosing `fractureStrain`; raises MaterialError when the library has no D1 ... D5 for the metal.
+		"""
+		if self.johnsonCookDamage is None:
+			raise MaterialError("material '%s' has no Johnson-Cook fracture constants D1 ... D5" % self.name)
+		d1, d2, d3, d4, d5 = self.johnsonCookDamage
+		t = np.clip((temperature - self.referenceTemperature) / (self.meltTemperature - self.referenceTemperature), 0, 1)
+		return (d1 + d2 * np.exp(d3 * triaxiality)) * (1 + d4 * np.log(np.maximum(rate / self.referenceRate, 1.0))) * (1 + d5 * t)
+
+
+#: attributes of McaMat that mcaMat() sets
+MCAMAT_ATTRIBUTES = tuple(f.name for f in fields(Material))[1:[f.name for f in fields(Material)].index('viscosityQuadratic') + 1]
+
+
+def _number(row, key, unit=1.0, default=None):
+	return float(row[key]) * unit if row.get(key) else default
+
+
+def _record(row):
+	jc = tuple(_number(row, k, u) for k, u in (('JC_A_MPa', 1e6), ('JC_B_MPa', 1e6), ('JC_n', 1), ('JC_C', 1), ('JC_m', 1)))
+	damage = tuple(_number(row, 'D%d' % i) for i in range(1, 6))
+	sg = tuple(_number(row, k, u) for k, u in (('Y0_GPa', 1e9), ('SG_beta', 1), ('SG_n', 1), ('SG_Ymax_GPa', 1e9)))
+	m = Material(
+	        name=row['name'], density=_number(row, 'rho_kgm3'), bulkSoundSpeed=_number(row, 'c0_ms'), hugoniotSlope=_number(row, 's'),
+	        gruneisen=_number(row, 'gamma0', default=0.0), shearModulus=_number(row, 'G_GPa', 1e9, math.nan),
+	        meltTemperature=_number(row, 'Tm_K', default=math.inf), heatCapacity=_number(row, 'cp', default=0.0),
+	        staticBulkModulus=_number(row, 'K_GPa', 1e9, math.nan), johnsonCook=None if None in jc else jc,
+	        johnsonCookDamage=None if None in damage else damage, steinbergGuinan=None if None in sg else sg,
+	        minimumPressure=_number(row, 'Pmin_GPa', 1e9, 0.0), eosSource=row['eos_src'], strengthSource=row['str_src'])
+	best = 'johnsonCook' if m.johnsonCook else 'linearHardening' if m.steinbergGuinan else 'elastic'
+	return _withYield(m, best)
+
+
+def _withYield(m, model):
+	"""The same metal with another yield model, its constants taken from the fullest law the library holds for it.
+
+	'perfect' takes the initial yield stress. 'linearHardening' is the least-squares line through the static room-temperature curve
+	(Johnson-Cook, else Steinberg-Guinan) for plastic strains from 0 to FIT_STRAIN.
+	"""
+	none = dict(hardeningModulus=0.0, hardeningExponent=1.0, rateCoefficient=0.0, thermalSoftening=1.0)
+	if model == 'elastic':
+		return replace(m, yieldModel=model, yieldStress=math.inf, **none)
+	if model == 'johnsonCook':
+		if not m.johnsonCook:
+			raise MaterialError("material '%s' has no Johnson-Cook constants; choose yieldModel 'linearHardening', 'perfect' or 'elastic'" % m.name)
+		a, b, n, c, t = m.johnsonCook
+		return replace(m, yieldModel=model, yieldStress=a, hardeningModulus=b, hardeningExponent=n, rateCoefficient=c, thermalSoftening=t)
+	if not (m.johnsonCook or m.steinbergGuinan):
+		raise MaterialError("material '%s' has no strength data; give yieldStress yourself or choose yieldModel 'elastic'" % m.name)
+	if model == 'perfect':
+		return replace(m, yieldModel=model, yieldStress=(m.johnsonCook or m.steinbergGuinan)[0], **none)
+	strain = np.linspace(0, FIT_STRAIN, 501)
+	if m.johnsonCook:
+		a, b, n = m.johnsonCook[:3]
+		curve = a + b * strain**n
+	else:
+		y0, beta, n, top = m.steinbergGuinan
+		curve = np.minimum(y0 * (1 + beta * strain)**n, top)
+	slope, start = np.polyfit(strain, curve, 1)
+	return replace(m, yieldModel=model, yieldStress=float(start), **dict(none, hardeningModulus=float(max(slope, 0.0))))
+
+
+@lru_cache(maxsize=None)
+def _library():
+	with open(DATA, newline='') as f:
+		return {r['name']: _record(r) for r in csv.DictReader(line for line in f if not line.startswith('#'))}
+
+
+def names():
+	"""Names of all materials, sorted (list of str)."""
+	return sorted(_library())
+
+
+def get(name, yieldModel=None, **overrides):
+	"""The record `name`, as Material.
+
+	`yieldModel` picks a simpler variant of the same metal (see YIELD_MODELS; None: the fullest that the library holds); any other
+	attribute of Material may be given by keyword and replaces the library's value. Raises MaterialError for an unknown name,
+	attribute or model and for values out of range.
+	"""
+	if isinstance(name, Material):
+		m = name
+	else:
+		if name not in _library():
+			near = difflib.get_close_matches(str(name), names(), 3, 0.4)
+			raise MaterialError("unknown material '%s'%s; the library holds: %s" %
+			                    (name, " (did you mean '%s'?)" % "' or '".join(near) if near else '', ', '.join(names())))
+		m = _library()[name]
+	if yieldModel is not None and yieldModel != m.yieldModel:
+		if yieldModel not in YIELD_MODELS:
+			raise MaterialError("yieldModel '%s' is not one of %s" % (yieldModel, ', '.join(YIELD_MODELS)))
+		given = 'yieldStress' in overrides and not (m.johnsonCook or m.steinbergGuinan)  # the caller brings the strength along
+		m = replace(m, yieldModel=yieldModel) if given else _withYield(m, yieldModel)
+	known = {f.name for f in fields(Material)}
+	for key in overrides:
+		if key not in known:
+			near = difflib.get_close_matches(key, known, 1)
+			raise MaterialError("material has no attribute '%s'%s" % (key, " (did you mean '%s'?)" % near[0] if near else ''))
+	m = replace(m, **overrides)
+	_check(m)
+	return m
+
+
+_POSITIVE = ('density', 'bulkSoundSpeed', 'yieldStress', 'referenceRate', 'meltTemperature', 'fractureStrain', 'spallStrength',
+             'pairStrength', 'fractureStress')
+_NOT_NEGATIVE = ('hugoniotSlope', 'gruneisen', 'hardeningModulus', 'hardeningExponent', 'rateCoefficient', 'thermalSoftening', 'heatCapacity',
+                 'taylorQuinney', 'strengthSpread', 'frictionAngle', 'viscosityLinear', 'viscosityQuadratic', 'shearModulus')
+
+
+def _check(m):
+	for keys, bad, rule in ((_POSITIVE, lambda v: not v > 0, 'above 0'), (_NOT_NEGATIVE, lambda v: not v >= 0, '0 or above')):
+		for k in keys:
+			if bad(getattr(m, k)) and not (k == 'shearModulus' and math.isnan(m.shearModulus)):  # an equation of state alone is a record too
+				raise MaterialError("material '%s': %s = %r must be %s" % (m.name, k, getattr(m, k), rule))
+	for k, allowed in (('eos', EOS_MODELS), ('yieldModel', YIELD_MODELS), ('strengthDistribution', DISTRIBUTIONS)):
+		if getattr(m, k) not in allowed:
+			raise MaterialError("material '%s': %s '%s' is not one of %s" % (m.name, k, getattr(m, k), ', '.join(allowed)))
+	if not m.strengthRatio >= 1:
+		raise MaterialError("material '%s': strengthRatio = %r must be 1 or above (compression strength / tensile strength)" % (m.name, m.strengthRatio))
+
+
+def mcaMat(name, label=None, **overrides):
+	"""A yade McaMat with the constants of `name` (or of a Material record); keywords as for get().
+
+	`label` is the label in O.materials (default: the material's name). Raises MaterialError when the set has no shear modulus.
+	The material is not appended to O.materials; addBodies() of packings does that.
+	"""
+	m = get(name, **overrides)
+	if not math.isfinite(m.shearModulus):
+		raise MaterialError("material '%s' has an equation of state only; give shearModulus [Pa] (0 for a fluid)" % m.name)
+	from ._yade import yadeClass
+	return yadeClass('McaMat')(label=label or m.name, **{k: getattr(m, k) for k in MCAMAT_ATTRIBUTES})

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What the penetration study reports, defined once. numpy arrays in, numbers out; no YADE needed.
+
+Rod material is everything that belonged to the rod at the start, broken or not; v is the velocity along the impact direction, eps_p the
+plastic strain, m the mass:
+
+    tail        material with eps_p < 0.1;  V_tail = sum m v / sum m over it
+    all         all rod material;           V_all  = sum m v / sum m
+    intact      material with eps_p < 0.3 and |v - V_tail| <= 0.15 |V_tail|
+    unbroken    material with eps_p < 1
+    velocityLossTail = 1 - V_tail/U0        velocityLossAll = 1 - V_all/U0
+    lengthLoss = 1 - m_intact/m_rod         lengthLossUnbroken = 1 - m_unbroken/m_rod
+
+U0 is the impact speed. dl/l0 of the study is lengthLoss (the rod erodes from its head, so mass counts length), dU/U0 is velocityLossTail;
+velocityLossAll counts what the rod as a whole has given to the plate. lengthLossUnbroken counts the mushroomed head, too, as rod: a
+source that does not say what it calls intact means something between the two. The same definitions hold for the two independent codes of
+tests/data/penetration_peers.csv.
+"""
+import math
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+__all__ = ['RodMeasure', 'momentumSettled', 'rearClearance', 'rodMeasure', 'speedAlong']
+
+TAIL_STRAIN = 0.1  #: material with less plastic strain is the undeformed tail [-]
+INTACT_STRAIN = 0.3  #: material with less plastic strain may count as intact rod [-]
+BROKEN_STRAIN = 1.  #: material with at least this plastic strain is debris [-]
+SPEED_BAND = 0.15  #: ... when its velocity is within this share of the tail's [-]
+
+
+@dataclass(frozen=True)
+class RodMeasure:
+	"""Losses and the velocities and masses they come from."""
+	lengthLoss: float  #: dl/l0 [-]
+	velocityLossTail: float  #: dU/U0 of the tail [-]; nan when no material is undeformed
+	velocityLossAll: float  #: dU/U0 of all rod material [-]
+	tailVelocity: float  #: [m/s]
+	allVelocity: float  #: [m/s]
+	tailMass: float  #: share of the rod's mass [-]
+	intactMass: float  #: share of the rod's mass [-]
+	lengthLossUnbroken: float  #: dl/l0 with the mushroomed head counted as rod [-]
+
+	def asDict(self):
+		return asdict(self)
+
+
+def speedAlong(velocity, direction):
+	"""Component (N,) of velocity (N, 2 or 3) [m/s] along `direction` (2 or 3 numbers, any length above 0)."""
+	n = np.zeros(np.shape(velocity)[1])
+	n[:len(direction)] = direction
+	length = math.sqrt(float(n @ n))
+	if not length > 0:
+		raise ValueError('direction must not be zero')
+	return np.asarray(velocity, float) @ (n / length)
+
+
+def rodMeasure(mass, velocity, plasticStrain, impactSpeed, direction=(0., -1.)):
+	"""Losses of the rod, see the head of this module.
+
+	mass (N,) [kg/m], velocity (N, 2 or 3) [m/s], plasticStrain (N,) [-] of all rod material (automata, cells or particles); impactSpeed U0 [m/s];
+	direction: of the impact. Raises ValueError for empty, mismatched or non-finite input.
+	"""
+	m, e = np.asarray(mass, float), np.asarray(plasticStrain, float)
+	if m.ndim != 1 or len(m) == 0 or e.shape != m.shape or len(velocity) != len(m):
+		raise ValueError('mass, velocity and plasticStrain must have one entry per piece of rod; got %s, %s, %s' % (m.shape, np.shape(velocity), e.shape))
+	v = speedAlong(velocity, direction)
+	if not (np.isfinite(m).all() and np.isfinite(v).all() and np.isfinite(e).all() and m.sum() > 0):
+		raise ValueError('mass, velocity and plasticStrain must be finite and the mass above 0')
+	if not impactSpeed > 0:
+		raise ValueError('impactSpeed must be above 0; got %r' % impactSpeed)
+	total = m.sum()
+	tail = e < TAIL_STRAIN
+	everything, broken = float(m @ v / total), float(m[e >= BROKEN_STRAIN].sum() / total)
+	if not m[tail].sum() > 0:
+		return RodMeasure(1., math.nan, 1 - everything / impactSpeed, math.nan, everything, 0., 0., broken)
+	vTail = float(m[tail] @ v[tail] / m[tail].sum())
+	intact = (e < INTACT_STRAIN) & (abs(v - vTail) <= SPEED_BAND * abs(vTail))
+	share = float(m[intact].sum() / total)
+	return RodMeasure(1 - share, 1 - vTail / impactSpeed, 1 - everything / impactSpeed, vTail, everything, float(m[tail].sum() / total), share, broken)
+
+
+def rearClearance(positions, plasticStrain, rear, direction=(0., -1.), quantile=0.95):
+	"""How far the head of the rod is beyond the plate's original rear face [m], negative before it.
+
+	positions (N, 2) [m] and plasticStrain (N,) of rod material, rear: a point on the face. The head is the front `quantile` of the material with
+	eps_p below 1 (what is more strained is debris). The study reads its numbers when this is at least half the rod's diameter.
+	"""
+	s = speedAlong(np.asarray(positions, float) - np.asarray(rear, float), direction)
+	s = s[np.asarray(plasticStrain, float) < BROKEN_STRAIN]
+	return float(np.quantile(s, quantile)) if len(s) else -math.inf
+
+
+def momentumSettled(time, momentum, window, tolerance=1e-3):
+	"""True when the momentum (n,) changed by less than `tolerance` of its first value over the last `window` [s] of time (n,) [s].
+
+	False as long as the record is shorter than the window.
+	"""
+	t, p = np.asarray(time, float), np.asarray(momentum, float)
+	if len(t) < 2 or t[-1] - t[0] < window:
+		return False
+	recent = p[t >= t[-1] - window]
+	return bool(np.ptp(recent) <= tolerance * abs(p[0]))

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Outlines of bodies in the x-y plane: polygons with holes, rectangles, discs, and yade.pack predicates, with one interface.
+
+Every outline has
+    bounds()                (xmin, ymin, xmax, ymax) [m]
+    classify(points, r)     for points (N, 2) two bool (N,): inside (the outline itself counts), and cut: the disc of radius r [m] about the
+                            point may meet the outline
+    seesOutside             False where classify() cannot tell for points outside which of them are cut
+    overlap(cells)          area [m2] of each convex cell (M, k, 2) that lies inside the outline, shape (M,)
+    area                    [m2], or None when it is not known exactly
+"""
+import math
+
+import numpy as np
+
+__all__ = ['OutlineError', 'Polygon', 'Rectangle', 'Predicate', 'disc', 'asOutline']
+
+
+class OutlineError(ValueError):
+	"""An outline that encloses nothing or cannot be understood; the message says why."""
+
+
+def ringArea(ring):
+	"""Signed area of a closed ring (n, 2), positive when it runs counter-clockwise [m2]."""
+	x, y = ring[:, 0], ring[:, 1]
+	return 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+
+
+def clipByConvex(ring, cell):
+	"""Sutherland & Hodgman (1974): the part of `ring` (n, 2) inside the convex counter-clockwise `cell` (k, 2), as one ring.
+
+	A ring that is not convex may come out with edges run through twice; they enclose nothing, so the signed area is exact.
+	"""
+	for a, b in zip(cell, np.roll(cell, -1, axis=0)):
+		if len(ring) == 0:
+			return ring
+		side = (b[0] - a[0]) * (ring[:, 1] - a[1]) - (b[1] - a[1]) * (ring[:, 0] - a[0])
+		nextRing, nextSide = np.roll(ring, -1, axis=0), np.roll(side, -1)
+		keep = side >= 0
+		crosses = keep != (nextSide >= 0)
+		t = np.divide(side, side - nextSide, out=np.zeros_like(side), where=crosses)
+		cut = ring + t[:, None] * (nextRing - ring)
+		both = np.stack((ring, cut), axis=1).reshape(-1, 2)
+		ring = both[np.stack((keep, crosses), axis=1).ravel()]
+	return ring
+
+
+class Polygon:
+	"""A simple polygon, convex or not, with holes. Its cells are clipped exactly."""
+	seesOutside = True
+
+	def __init__(self, points, holes=()):
+		"""points (n, 2) and each hole (m, 2) in [m], in either sense of rotation, not closed. Raises OutlineError."""
+		rings = []
+		for k, r in enumerate([points, *holes]):
+			r = np.array(r, float)
+			if r.ndim != 2 or r.shape[1] != 2 or len(r) < 3 or not np.isfinite(r).all():
+				raise OutlineError('a polygon needs at least 3 finite points (x, y); ring %d has shape %s' % (k, r.shape))
+			r = r[np.any(r != np.roll(r, 1, axis=0), axis=1)]
+			a = ringArea(r) if len(r) > 2 else 0.
+			if abs(a) <= 1e-14 * np.ptp(r, axis=0).max()**2:
+				raise OutlineError('ring %d of the polygon encloses no area' % k)
+			rings.append(r if (a > 0) == (k == 0) else r[::-1])  # outline counter-clockwise, holes clockwise
+		self.rings = rings
+		self.area = sum(ringArea(r) for r in rings)
+		if self.area <= 0:
+			raise OutlineError('the holes of the polygon are larger than the polygon')
+
+	def bounds(self):
+		r = self.rings[0]
+		return (*r.min(axis=0), *r.max(axis=0))
+
+	def _edges(self):
+		for r in self.rings:
+			yield from zip(r, np.roll(r, -1, axis=0))
+
+	def edgeDistance(self, points):
+		"""Distance of each point (N, 2) from the nearest edge [m], shape (N,)."""
+		best = np.full(len(points), np.inf)
+		for a, b in self._edges():
+			e = b - a
+			t = np.clip((points - a) @ e / (e @ e), 0, 1)
+			best = np.minimum(best, np.hypot(*(points - a - t[:, None] * e).T))
+		return best
+
+	def classify(self, points, radius):
+		points = np.asarray(points, float)
+		x, y = points.T
+		odd = np.zeros(len(points), bool)
+		for (ax, ay), (bx, by) in self._edges():  # crossings of the ray towards +x
+			if ay != by:
+				odd ^= ((ay <= y) != (by <= y)) & (x < ax + (y - ay) * (bx - ax) / (by - ay))
+		distance = self.edgeDistance(points)
+		return odd | (distance <= 1e-10 * np.ptp(self.rings[0], axis=0).max()), distance < radius
+
+	def overlap(self, cells):
+		return np.array([sum(ringArea(c) for c in (clipByConvex(r, cell) for r in self.rings) if len(c)) for cell in cells]).reshape(len(cells))
+
+
+class Rectangle(Polygon):
+	"""A rectangle of `size` (width, height) [m] about `center` [m], turned by `angle` [rad] against the x axis."""
+
+	def __init__(self, center, size, angle=0.):
+		self.center, self.size, self.angle = np.array(center, float), np.array(size, float), float(angle)
+		if self.center.shape != (2,) or self.size.shape != (2,) or not (self.size > 0).all():
+			raise OutlineError('a rectangle needs a center (x, y) and a size (width, height) above 0; got %s and %s' % (center, size))
+		c, s = math.cos(angle), math.sin(angle)
+		corners = 0.5 * self.size * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+		super().__init__(self.center + corners @ np.array([(c, s), (-s, c)]))
+
+
+def disc(center, radius, segments=180):
+	"""A disc as a regular polygon of equal area with `segments` sides; center (x, y) and radius in [m]."""
+	if not radius > 0:
+		raise OutlineError('the radius of a disc must be above 0; got %r' % radius)
+	a = 2 * math.pi * (np.arange(segments) + 0.5) / segments
+	r = radius * math.sqrt(2 * math.pi / segments / math.sin(2 * math.pi / segments))
+	return Polygon(np.asarray(center, float) + r * np.stack((np.cos(a), np.sin(a)), axis=1))
+
+
+class Predicate:
+	"""Anything that answers like a yade.pack predicate: called with (point, pad) and having aabb(); cut in the plane z.
+
+	Cells are measured by sampling on a regular set of points, so areas are good to about 1 % of a cell.
+	"""
+	area = None
+	seesOutside = False
+	SIDE = 12  # samples along the side of a cell's bounding square
+
+	def __init__(self, predicate, z=None):
+		self.predicate = predicate
+		try:
+			lo, hi = predicate.aabb()
+			lo, hi = [float(v) for v in lo], [float(v) for v in hi]
+		except AttributeError:
+			raise OutlineError('a predicate needs a method aabb() as in yade.pack; %r has none' % (predicate,)) from None
+		if not all(map(math.isfinite, lo[:2] + hi[:2])):
+			raise OutlineError('the predicate is unbounded in the x-y plane: %s to %s; intersect it with a box' % (lo, hi))
+		mid = 0.5 * (lo[2] + hi[2])
+		self.z = z if z is not None else mid if math.isfinite(mid) else 0.
+		self._bounds = (lo[0], lo[1], hi[0], hi[1])
+
+	def bounds(self):
+		return self._bounds
+
+	def inside(self, points, pad=0.):
+		p, z = self.predicate, self.z
+		return np.fromiter((p((x, y, z), pad) for x, y in np.asarray(points, float).tolist()), bool, len(points))
+
+	def classify(self, points, radius):
+		inside = self.inside(points)
+		cut = inside.copy()
+		cut[inside] = ~self.inside(np.asarray(points, float)[inside], radius)
+		return inside, cut
+
+	def overlap(self, cells):
+		return np.array([self._overlap(np.asarray(c, float)) for c in cells]).reshape(len(cells))
+
+	def _overlap(self, cell):
+		lo, hi = cell.min(axis=0), cell.max(axis=0)
+		u = (np.arange(self.SIDE) + 0.5) / self.SIDE
+		p = lo + np.stack(np.meshgrid(u, u), axis=-1).reshape(-1, 2) * (hi - lo)
+		a, b = cell, np.roll(cell, -1, axis=0)
+		within = np.all((b - a)[:, 0] * (p[:, 1:] - a[:, 1]) - (b - a)[:, 1] * (p[:, :1] - a[:, 0]) >= 0, axis=1)
+		return abs(ringArea(cell)) * self.inside(p[within]).mean()
+
+
+def asOutline(shape):
+	"""`shape` as an outline: an outline as it is, an array of points (n, 2) as Polygon, anything callable as Predicate."""
+	if all(hasattr(shape, k) for k in ('classify', 'overlap', 'bounds')):
+		return shape
+	if callable(shape):
+		return Predicate(shape)
+	try:
+		return Polygon(shape)
+	except (TypeError, ValueError) as e:
+		raise OutlineError('an outline is a Polygon, a Rectangle, an array of points (n, 2) or a yade.pack predicate; got %r: %s' % (shape, e)) from None

@@ -1,0 +1,304 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Packings of automata in plane strain and the YADE bodies made of them.
+
+    >>> from yade_mca import packings
+    >>> plate = packings.hexagonal(1e-3, packings.Rectangle((0, 0), (80e-3, 25e-3)), angle=0.5 * math.pi)
+    >>> ids = packings.addBodies(plate, '4340', velocity=(0, 0))
+
+A packing is numbers only (numpy arrays); addBodies() alone needs YADE. All lengths in [m], areas and masses per unit thickness.
+"""
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .outlines import Polygon, Predicate, Rectangle, asOutline, disc
+
+__all__ = ['Packing', 'PackingError', 'CellGeometry', 'cellGeometry', 'hexagonal', 'create', 'addBodies', 'Polygon', 'Predicate', 'Rectangle', 'disc']
+
+
+class PackingError(ValueError):
+	"""A packing that cannot be made or would be wrong; the message says why and what to do."""
+
+
+@dataclass(frozen=True)
+class CellGeometry:
+	"""One automaton of a perfect packing of spacing d: what the pair forces are multiplied with."""
+	name: str
+	dim: int  #: 2: plane strain, per unit thickness; 3: space
+	neighbours: int  #: N0
+	volume: float  #: Omega0 [m2 or m3]
+	contact: float  #: S0 [m or m2]
+
+
+def cellGeometry(name, d, dim=None):
+	"""Omega0, S0, N0 and dimension of the packing `name` at spacing d [m]. In each, Omega0 = N0 S0 d / (2 dim)."""
+	r2, r3 = math.sqrt(2), math.sqrt(3)
+	table = {
+	        'hexagonal': (2, 6, r3 / 2 * d**2, d / r3),
+	        'square': (2, 4, d**2, d),
+	        'sc': (3, 6, d**3, d**2),
+	        'fcc': (3, 12, d**3 / r2, d**2 / (2 * r2)),
+	        'hcp': (3, 12, d**3 / r2, d**2 / (2 * r2)),
+	}
+	if name not in table:
+		raise PackingError("unknown packing '%s'; known are %s" % (name, ', '.join(table)))
+	return CellGeometry(name, *table[name])
+
+
+@dataclass(frozen=True)
+class Packing:
+	"""Automata of one body. Arrays have one entry per automaton, row by row."""
+	positions: np.ndarray  #: (N, 2) [m]
+	weight: np.ndarray  #: (N,) area that the automaton stands for / area of a full cell [-]
+	spacing: float  #: d [m]
+	angle: float  #: direction of the close-packed rows against x [rad]
+	lattice: np.ndarray  #: (N, 2) int: place in the row, number of the row
+	outlineArea: float = None  #: [m2], None when not known exactly
+
+	def __len__(self):
+		return len(self.positions)
+
+	@property
+	def radius(self):
+		return 0.5 * self.spacing
+
+	@property
+	def cell(self):
+		return cellGeometry('hexagonal', self.spacing)
+
+	@property
+	def area(self):
+		"""Area that all automata stand for [m2]."""
+		return float(self.weight.sum()) * self.cell.volume
+
+	def masses(self, density):
+		"""Mass of each automaton per unit thickness [kg/m], shape (N,)."""
+		return density * self.cell.volume * self.weight
+
+	def translated(self, by):
+		"""The packing moved by (dx, dy) [m]."""
+		return replace(self, positions=self.positions + np.asarray(by, float))
+
+	def select(self, which):
+		"""The automata `which` (bool (N,) or indices) as a packing of their own."""
+		return replace(self, positions=self.positions[which], weight=self.weight[which], lattice=self.lattice[which], outlineArea=None)
+
+	def onLine(self, point, direction, tolerance=1e-6):
+		"""Indices of the automata on a straight line, sorted along it; tolerance as a share of the spacing."""
+		t = np.asarray(direction, float) / np.hypot(*direction)
+		r = self.positions - np.asarray(point, float)
+		at = np.flatnonzero(abs(r[:, 0] * t[1] - r[:, 1] * t[0]) <= tolerance * self.spacing)
+		return at[np.argsort(r[at] @ t)]
+
+	def pairs(self):
+		"""Neighbours of the perfect lattice, each pair once: int (M, 2) with first < second."""
+		table = _Table(self.lattice)
+		found = []
+		for k in range(3):  # half of the six directions reaches each pair once
+			j = table.neighbour(self.lattice, k)
+			i = np.flatnonzero(j >= 0)
+			found.append(np.sort(np.stack((i, j[i]), axis=1), axis=1))
+		p = np.concatenate(found)
+		return p[np.lexsort((p[:, 1], p[:, 0]))]
+
+	def hexagons(self, scale=1.):
+		"""Corners of the cells, (N, 6, 2) [m], for pictures and areas."""
+		return self.positions[:, None, :] + scale * _hexagon(self.spacing, self.angle)
+
+
+class _Table:
+	"""Which automaton sits at a lattice place. Odd rows are shifted by +d/2."""
+	EVEN = ((1, 0), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1))
+	ODD = ((1, 0), (1, 1), (0, 1), (-1, 0), (0, -1), (1, -1))
+
+	def __init__(self, lattice):
+		self.low = lattice.min(axis=0) - 2
+		shape = lattice.max(axis=0) + 3 - self.low
+		self.number = np.full(shape, -1)
+		self.number[tuple((lattice - self.low).T)] = np.arange(len(lattice))
+
+	def neighbour(self, lattice, k):
+		"""Number of the k-th neighbour (0 ... 5, counter-clockwise from +x) of each place, -1 where there is none."""
+		step = np.where((lattice[:, 1] % 2)[:, None] == 1, self.ODD[k], self.EVEN[k])
+		return self.number[tuple((lattice + step - self.low).T)]
+
+
+def _rotation(angle):
+	"""Rows are the lattice's axes in x, y. Multiples of 30 degrees come out symmetric to the last bit."""
+	c, s = math.cos(angle), math.sin(angle)
+	c, s = (0. if abs(v) < 1e-15 else v for v in (c, s))
+	return np.array([(c, s), (-s, c)])
+
+
+def _hexagon(d, angle):
+	a = np.pi / 6 + np.pi / 3 * np.arange(6)
+	return d / math.sqrt(3) * np.stack((np.cos(a), np.sin(a)), axis=1) @ _rotation(angle)
+
+
+def _fittedOrigin(outline, d, angle):
+	"""A lattice point such that whole cells fill the outline as evenly as can be: see hexagonal()."""
+	lo, hi = np.array(outline.bounds()[:2]), np.array(outline.bounds()[2:])
+	center, axes = 0.5 * (lo + hi), _rotation(angle)
+	if not isinstance(outline, Rectangle):
+		return center
+	turn = (angle - outline.angle) / (math.pi / 6)
+	if abs(turn - round(turn)) > 1e-9:
+		return center
+	along = outline.size if round(turn) % 2 == 0 and round(turn) % 6 == 0 else outline.size[::-1] if round(turn) % 6 == 3 else None
+	if along is None:  # rows at 30 or 60 degrees to all sides
+		return center
+	pitch = 0.5 * math.sqrt(3) * d
+	count = np.maximum(np.round(along / (d, pitch)), 1)
+	return center - (0.5 * (count[0] - 1) * d + (0.25 * d if count[1] > 1 else 0.)) * axes[0] - 0.5 * (count[1] - 1) * pitch * axes[1]
+
+
+def _candidates(outline, d, angle, origin):
+	"""Lattice places and positions that cover the outline with one cell to spare."""
+	x0, y0, x1, y1 = outline.bounds()
+	corners = (np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)]) - origin) @ _rotation(angle).T
+	pitch = 0.5 * math.sqrt(3) * d
+	low = np.floor(corners.min(axis=0) / (d, pitch)).astype(int) - 2
+	high = np.ceil(corners.max(axis=0) / (d, pitch)).astype(int) + 2
+	if np.prod((high - low + 1.).astype(float)) > 3e8:
+		raise PackingError('spacing %g m gives more than 3e8 lattice places in the outline (%g x %g m); is the unit right?' % (d, x1 - x0, y1 - y0))
+	j, i = np.meshgrid(np.arange(low[1], high[1] + 1), np.arange(low[0], high[0] + 1), indexing='ij')
+	lattice = np.stack((i.ravel(), j.ravel()), axis=1)
+	flat = np.stack(((lattice[:, 0] + 0.5 * (lattice[:, 1] % 2)) * d, lattice[:, 1] * pitch), axis=1)
+	return lattice, origin + flat @ _rotation(angle)
+
+
+def hexagonal(spacing, outline, angle=0., origin=None, rim='cells', minWeight=0.2):
+	"""Hexagonal packing of `spacing` [m] in `outline`; the close-packed rows run at `angle` [rad] against x.
+
+	outline    Polygon, Rectangle, disc(), an array of points (n, 2), or a yade.pack predicate
+	origin     where a lattice point lies (x, y) [m]. Default: the middle of the outline; in a Rectangle whose sides run along or
+	           across the rows, the whole numbers of rows and of automata per row that come nearest to its size, centred, so that the outermost
+	           weights stay between 0.5 and 1.5 and the pattern is the same on both sides
+	rim        'cells': automata whose centre is inside. The weight is the part of the cell inside the outline; cells whose centre is outside
+	                    and cells with less than `minWeight` (a light automaton would shorten the time step) are given, in equal shares, to
+	                    their neighbours that stay. So weights at a surface lie between minWeight and about 1.6 and the mass is exactly that of
+	                    the outline (polygons; with predicates as exact as the sampling). Automata on the outline get 1/2: tied rows.
+	           'full':  the same automata, all of weight 1: the body is the union of its cells, stiffness and mass match everywhere, and
+	                    its area differs from the outline's by at most the rim
+	Raises PackingError when the spacing is not positive and finite or no automaton fits.
+	"""
+	d = float(spacing)
+	outline = asOutline(outline)
+	x0, y0, x1, y1 = outline.bounds()
+	if not (d > 0 and math.isfinite(d)):
+		raise PackingError('the spacing must be above 0 and finite; got %r' % spacing)
+	if rim not in ('cells', 'full'):
+		raise PackingError("rim '%s' is neither 'cells' nor 'full'" % rim)
+	if not 0 <= minWeight < 0.5:
+		raise PackingError('minWeight must be at least 0 and below 0.5 (tied rows have 1/2); got %r' % minWeight)
+	origin = _fittedOrigin(outline, d, angle) if origin is None else np.asarray(origin, float)
+	lattice, positions = _candidates(outline, d, angle, origin)
+	inside, cut = outline.classify(positions, d / math.sqrt(3))
+	cellArea = cellGeometry('hexagonal', d).volume
+	if rim == 'full':
+		weight = np.ones(len(lattice))
+		keep = inside
+	else:
+		table = _Table(lattice)
+		if not outline.seesOutside:  # cells outside that may be cut are the neighbours of those inside
+			for k in range(6):
+				n = table.neighbour(lattice[inside], k)
+				cut[n[n >= 0]] |= ~inside[n[n >= 0]]
+		at = np.flatnonzero(cut)
+		weight = (inside & ~cut).astype(float)
+		weight[at] = np.clip(outline.overlap(positions[at][:, None] + _hexagon(d, angle)) / cellArea, 0, 1)
+		weight[weight < 1e-12] = 0
+		keep = inside & (weight >= minWeight)
+		if keep.any():
+			_giveAway(table, lattice, positions, weight, keep)
+	if not keep.any():
+		raise PackingError('no automaton of spacing %g m fits the outline (%g x %g m): take a smaller spacing' % (d, x1 - x0, y1 - y0))
+	return Packing(positions[keep], weight[keep], d, float(angle), lattice[keep], outline.area)
+
+
+def _giveAway(table, lattice, positions, weight, keep):
+	"""Adds the weight of cells that are not kept to their kept neighbours in equal shares, or to the nearest kept automaton."""
+	lost = np.flatnonzero(~keep & (weight > 0))
+	if len(lost) == 0:
+		return
+	around = np.stack([table.neighbour(lattice[lost], k) for k in range(6)], axis=1)
+	takes = (around >= 0) & keep[around]
+	count = takes.sum(axis=1)
+	share = np.where(takes, (weight[lost] / np.maximum(count, 1))[:, None], 0)
+	gain = np.zeros(len(weight))
+	np.add.at(gain, around[takes], share[takes])
+	kept = np.flatnonzero(keep)
+	for i in lost[count == 0]:
+		gain[kept[np.argmin(np.sum((positions[kept] - positions[i])**2, axis=1))]] += weight[i]
+	weight += gain
+	weight[lost] = 0
+
+
+_REFUSED = {
+        ('square', 'cube', 'cubic', 'sc'):
+                'a square (cube, sc) arrangement has zero-energy modes: its discs turn like gear wheels without straining any pair, and the '
+                'pair law has no bending stiffness to resist',
+        ('fcc', 'hcp'):
+                'fcc and hcp are arrangements of spheres in space; plane strain needs discs in one layer, each with 6 neighbours',
+}
+
+
+def create(name, spacing, outline, **options):
+	"""The packing `name` by hexagonal(); in plane strain all others are refused with the reason (PackingError)."""
+	for refused, reason in _REFUSED.items():
+		if name in refused:
+			raise PackingError("packing '%s' is refused in plane strain: %s. Use 'hexagonal'." % (name, reason))
+	if name != 'hexagonal':
+		raise PackingError("unknown packing '%s'; plane strain has 'hexagonal'" % name)
+	return hexagonal(spacing, outline, **options)
+
+
+def _material(material):
+	"""A yade material from a McaMat, a name or a record of the library, appended to O.materials when it is not there yet."""
+	from ._yade import scene
+	from .materials import Material, mcaMat
+	m = mcaMat(material) if isinstance(material, (str, Material)) else material
+	if getattr(m, 'id', 0) < 0:
+		scene().materials.append(m)
+	return m
+
+
+def addBodies(packing, material, velocity=(0., 0.), angularVelocity=0., mask=1, fixed=False, color=None):
+	"""One YADE body (a Sphere of radius d/2 at z = 0) per automaton; returns their ids, a list of int in the packing's order.
+
+	material     McaMat, or a name or record of the library; needs density [kg/m3]
+	velocity     (2,) or (N, 2) [m/s]
+	angularVelocity  about z, of each automaton [rad/s]
+	mask         Body.mask (int), by which other engines tell groups of bodies apart
+	fixed        True: all degrees of freedom are blocked, so that the bodies keep the velocity they have; else those out of the plane, 'zXY'
+	color        (r, g, b) in 0 ... 1, default grey
+	Mass is weight * density * Omega0 and the moment of inertia m R^2/2 (disc), both per 1 m of thickness.
+	Raises PackingError for a velocity or density that is not finite or of the wrong shape.
+	"""
+	from ._yade import scene, yadeClass
+	velocity = np.asarray(velocity, float)
+	if velocity.shape not in ((2,), (len(packing), 2)) or not np.isfinite(velocity).all():
+		raise PackingError('velocity must be finite, of shape (2,) or (%d, 2); it has shape %s' % (len(packing), velocity.shape))
+	m = _material(material)
+	if not (m.density > 0 and math.isfinite(m.density)):
+		raise PackingError('density of the material must be above 0; it is %r' % m.density)
+	Body, Sphere = yadeClass('Body'), yadeClass('Sphere')
+	radius, color = packing.radius, tuple(color or (0.6, 0.6, 0.6))
+	masses = packing.masses(m.density)
+	rows = zip(packing.positions.tolist(), np.broadcast_to(velocity, (len(packing), 2)).tolist(), masses.tolist(), (0.5 * radius**2 * masses).tolist())
+	blocked, spin = 'xyzXYZ' if fixed else 'zXY', (0., 0., float(angularVelocity))
+	bodies = []
+	for (x, y), (vx, vy), mass, inertia in rows:
+		b = Body()
+		b.shape = Sphere(radius=radius, color=color)
+		b.material = m
+		s = m.newAssocState()
+		s.pos = s.refPos = (x, y, 0.)
+		s.vel, s.angVel = (vx, vy, 0.), spin
+		s.mass, s.inertia = mass, (inertia, inertia, inertia)
+		s.blockedDOFs = blocked
+		b.state = s
+		b.mask = mask
+		bodies.append(b)
+	return scene().bodies.append(bodies)

@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Pictures: automata and grid coloured by a field, histories, convergence, time against error. numpy in, image files out (matplotlib, Agg).
+
+Lengths come in metres and are drawn in millimetres. A field is given in SI with its unit; `scale` and the unit shown are chosen from SCALES.
+Every function returns the path it wrote; files appear whole or not at all.
+"""
+import io
+import math
+import os
+
+import matplotlib
+
+matplotlib.use('Agg')
+import numpy as np
+from matplotlib import pyplot as plt
+from matplotlib.collections import EllipseCollection, PolyCollection
+
+from .tasks.report import writeAtomically
+
+__all__ = ['automataPicture', 'convergence', 'drawAutomata', 'drawGrid', 'gridQuads', 'history', 'pareto', 'save']
+
+#: unit of the data -> (factor, unit shown)
+SCALES = {'Pa': (1e-9, 'GPa'), 'm': (1e3, 'mm'), 's': (1e6, 'µs'), 'J/kg': (1e-3, 'kJ/kg'), 'J/m': (1e-3, 'kJ/m')}
+STYLE = {'font.size': 9, 'axes.spines.top': False, 'axes.spines.right': False, 'legend.frameon': False, 'figure.dpi': 150, 'savefig.dpi': 150}
+
+
+def shown(values, unit):
+	"""(values, unit) as they are drawn."""
+	factor, name = SCALES.get(unit, (1., unit))
+	return np.asarray(values, float) * factor, name
+
+
+def save(figure, path):
+	"""Writes a figure by the suffix of `path` (png, pdf, svg), atomically, and closes it."""
+	data = io.BytesIO()
+	kind = os.path.splitext(str(path))[1].lstrip('.') or 'png'
+	figure.savefig(data, format=kind, bbox_inches='tight')
+	plt.close(figure)
+	writeAtomically(str(path), data.getvalue())
+	return str(path)
+
+
+def gridQuads(nodes):
+	"""Corners (cells, 4, 2) of the cells of a structured block with nodes (ni, nj, 2); cell (i, j) is number i*(nj-1) + j."""
+	n = np.asarray(nodes, float)[..., :2]
+	return np.stack((n[:-1, :-1], n[1:, :-1], n[1:, 1:], n[:-1, 1:]), axis=2).reshape(-1, 4, 2)
+
+
+def drawAutomata(axes, positions, radius, values, cmap='viridis', vmin=None, vmax=None):
+	"""Discs of true size: positions (N, 2) [m], radius scalar or (N,) [m], values (N,). Returns the collection. Fast up to about 1e6."""
+	p = 1e3 * np.asarray(positions, float)[:, :2]
+	size = 2e3 * np.broadcast_to(np.asarray(radius, float), len(p))
+	discs = EllipseCollection(size, size, np.zeros(len(p)), offsets=p, units='xy', transOffset=axes.transData, linewidths=0, cmap=cmap)
+	discs.set_array(np.asarray(values, float))
+	discs.set_clim(vmin, vmax)
+	axes.add_collection(discs)
+	return discs
+
+
+def drawGrid(axes, nodes, values, cmap='viridis', vmin=None, vmax=None, lines=True):
+	"""Cells of a block with nodes (ni, nj, 2) [m] coloured by values (ni-1, nj-1), and the mesh. Returns the collection."""
+	cells = PolyCollection(1e3 * gridQuads(nodes), linewidths=0.25 if lines else 0, edgecolors='0.25' if lines else 'none', cmap=cmap)
+	cells.set_array(np.asarray(values, float).ravel())
+	cells.set_clim(vmin, vmax)
+	axes.add_collection(cells)
+	return cells
+
+
+def _range(arrays, low, high):
+	"""Colour range: what is given, else the smallest and largest finite value of all arrays."""
+	every = np.concatenate([np.ravel(np.asarray(a, float)) for a in arrays]) if arrays else np.zeros(1)
+	every = every[np.isfinite(every)]
+	low = low if low is not None else every.min() if len(every) else 0.
+	high = high if high is not None else every.max() if len(every) else 1.
+	return low, high if high > low else low + (abs(low) or 1.) * 1e-12 + 1e-300
+
+
+def automataPicture(path, positions, radius, values, label, unit='', blocks=(), title='', vmin=None, vmax=None, cmap='viridis', bounds=None, width=7.):
+	"""Picture of automata and grid coloured by one field.
+
+	positions (N, 2) [m], radius scalar or (N,) [m], values (N,) in `unit`
+	blocks    sequence of (nodes (ni, nj, 2) [m], values (ni-1, nj-1)) of the grid, drawn with its mesh
+	vmin, vmax  colour range in `unit`; default: the range of the data
+	bounds    (xmin, ymin, xmax, ymax) [m] shown; default: everything
+	width     of the picture in inches
+	Raises ValueError where shapes do not fit.
+	"""
+	positions, values = np.asarray(positions, float).reshape(-1, np.shape(positions)[-1] if np.size(positions) else 2)[:, :2], np.asarray(values, float)
+	if values.shape != (len(positions),):
+		raise ValueError('values must have shape (%d,), one per automaton; got %s' % (len(positions), values.shape))
+	for nodes, v in blocks:
+		if np.shape(v) != tuple(n - 1 for n in np.shape(nodes)[:2]):
+			raise ValueError('cell values of shape %s do not fit nodes of shape %s' % (np.shape(v), np.shape(nodes)))
+	factor, name = SCALES.get(unit, (1., unit))
+	limits = _range([values] * bool(len(values)) + [v for _, v in blocks], vmin, vmax)
+	low, high = (factor * v for v in limits)
+	if bounds is None:
+		ends = [np.asarray(n, float)[..., :2].reshape(-1, 2) for n, _ in blocks]
+		if len(positions):
+			r = float(np.max(radius))
+			ends += [positions - r, positions + r]
+		every = np.concatenate(ends)
+		bounds = (*every.min(axis=0), *every.max(axis=0))
+	x0, y0, x1, y1 = (1e3 * b for b in bounds)
+	with plt.rc_context(STYLE):
+		figure, axes = plt.subplots(figsize=(width, min(max(width * (y1 - y0) / (x1 - x0), 0.3 * width), 2 * width) + 0.8))
+		drawn = [drawGrid(axes, n, factor * np.asarray(v, float), cmap, low, high) for n, v in blocks]
+		if len(positions):
+			drawn.append(drawAutomata(axes, positions, radius, factor * values, cmap, low, high))
+		axes.set(xlim=(x0, x1), ylim=(y0, y1), aspect='equal', xlabel='x [mm]', ylabel='y [mm]', title=title)
+		outside = 'both' if (vmin is not None and vmax is not None) else 'min' if vmin is not None else 'max' if vmax is not None else 'neither'
+		figure.colorbar(drawn[-1], ax=axes, label='%s [%s]' % (label, name) if name else label, shrink=0.8, extend=outside)
+		return save(figure, path)
+
+
+def history(path, time, panels, title='', marks=()):
+	"""Curves against time, one panel above the other.
+
+	time (n,) [s]; panels: sequence of (label, unit, {name: values (n,)}); marks: times [s] drawn as thin lines.
+	"""
+	with plt.rc_context(STYLE):
+		figure, axes = plt.subplots(len(panels), 1, sharex=True, figsize=(7, 1.9 * len(panels) + 0.6), squeeze=False)
+		t, unit = shown(time, 's')
+		for ax, (label, unitOfPanel, curves) in zip(axes[:, 0], panels):
+			for name, values in curves.items():
+				ax.plot(t, shown(values, unitOfPanel)[0], label=name, lw=1.2)
+			u = shown(0, unitOfPanel)[1]
+			ax.set_ylabel('%s [%s]' % (label, u) if u else label)
+			for m in marks:
+				ax.axvline(shown(m, 's')[0], color='0.7', lw=0.6)
+			if len(curves) > 1:
+				ax.legend(fontsize=8)
+		axes[-1, 0].set_xlabel('t [%s]' % unit)
+		axes[0, 0].set_title(title)
+		figure.align_ylabels()
+		return save(figure, path)
+
+
+def convergence(path, sizes, errors, xlabel='d [mm]', ylabel='error', orders=(1, 2), title=''):
+	"""Errors against size, log-log, with lines of the given orders. sizes (n,); errors {name: (n,)}. Values that are 0 or nan are left out."""
+	with plt.rc_context(STYLE):
+		figure, ax = plt.subplots(figsize=(5, 4))
+		h, largest = np.asarray(sizes, float), 0.
+		for name, e in errors.items():
+			e = np.asarray(e, float)
+			use = np.isfinite(e) & (e > 0)
+			ax.loglog(h[use], e[use], 'o-', ms=4, lw=1.2, label=name)
+			largest = max(largest, e[use].max(initial=0.))
+		for k in orders:
+			ax.loglog(h, (largest or 1.) * (h / h.max())**k, color='0.6', lw=0.8, ls='--', zorder=0)
+			ax.annotate('order %g' % k, (h.min(), (largest or 1.) * (h.min() / h.max())**k), fontsize=7, color='0.4')
+		ax.set(xlabel=xlabel, ylabel=ylabel, title=title)
+		ax.legend(fontsize=8)
+		return save(figure, path)
+
+
+def paretoFront(cost, error):
+	"""Indices of the points that no other point beats in both, sorted by cost."""
+	order = np.lexsort((error, cost))
+	best, front = math.inf, []
+	for i in order:
+		if error[i] < best:
+			best = error[i]
+			front.append(int(i))
+	return np.array(front, int)
+
+
+def pareto(path, cost, error, labels, groups=None, xlabel='time [s]', ylabel='error', title=''):
+	"""Time against error, log-log, with the Pareto front marked. cost, error (n,); labels n names; groups n names for colours or None."""
+	cost, error = np.asarray(cost, float), np.asarray(error, float)
+	groups = list(groups) if groups is not None else [''] * len(cost)
+	with plt.rc_context(STYLE):
+		figure, ax = plt.subplots(figsize=(6.5, 4.5))
+		for g in dict.fromkeys(groups):
+			at = [i for i, x in enumerate(groups) if x == g]
+			ax.loglog(cost[at], error[at], 'o', ms=4, label=g or None)
+		front = paretoFront(cost, error)
+		ax.loglog(cost[front], error[front], '-', color='0.3', lw=1, zorder=0, label='Pareto front')
+		for i in front:
+			ax.annotate(labels[i], (cost[i], error[i]), fontsize=6, xytext=(3, 3), textcoords='offset points')
+		ax.set(xlabel=xlabel, ylabel=ylabel, title=title)
+		ax.legend(fontsize=8)
+		return save(figure, path)

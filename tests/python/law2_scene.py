@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Scenes of automata that run by McaEngine or by the law in YADE's own loop, for the tests of the latter."""
+import numpy as np
+
+
+def engines(road, dt, walls=False, rule='affine', **newton):
+	"""O.engines for the road 'engine' or 'law2' with a fixed time step [s]."""
+	from yade import O
+	from yade.wrapper import (Bo1_Facet_Aabb, Bo1_Sphere_Aabb, Bo1_Wall_Aabb, Bo1_Box_Aabb, ForceResetter, Ig2_Box_Sphere_ScGeom, Ig2_Facet_Sphere_ScGeom,
+	                          Ig2_Sphere_Sphere_ScGeom, Ig2_Wall_Sphere_ScGeom, InsertionSortCollider, InteractionLoop, Ip2_FrictMat_McaMat_McaPhys,
+	                          Ip2_McaMat_McaMat_McaPhys, Law2_ScGeom_McaPhys_Mca, McaDensity, McaEngine, McaForces, NewtonIntegrator)
+	O.dt = dt
+	if road == 'engine':
+		O.engines = [McaEngine(adaptive=False, volumeRule=rule)]
+		return
+	O.engines = [
+	        ForceResetter(),
+	        InsertionSortCollider([Bo1_Sphere_Aabb(aabbEnlargeFactor=1.4), Bo1_Facet_Aabb(), Bo1_Wall_Aabb(), Bo1_Box_Aabb()]),
+	        McaDensity(volumeRule=rule),
+	        InteractionLoop([Ig2_Sphere_Sphere_ScGeom(interactionDetectionFactor=1.4), Ig2_Facet_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom(), Ig2_Box_Sphere_ScGeom()],
+	                        [Ip2_McaMat_McaMat_McaPhys(), Ip2_FrictMat_McaMat_McaPhys()], [Law2_ScGeom_McaPhys_Mca()]),
+	        McaForces(),
+	        NewtonIntegrator(damping=0, **newton),
+	]
+
+
+def density():
+	from yade import O
+	return next(e for e in O.engines if type(e).__name__ == 'McaDensity')
+
+
+def impact(speed=400., n=10, **steel):
+	"""A block flies obliquely into another one: contact between bodies, plastic flow, fracture. Spacing 1 mm; returns the ids."""
+	from yade_mca import materials, packings
+	steel = dict(dict(yieldModel='linearHardening', yieldStress=0.8e9, hardeningModulus=0.5e9, fractureStrain=0.12, spallStrength=2.5e9, strengthSpread=0.1, frictionAngle=0.2), **steel)
+	m = materials.mcaMat('4340', **steel)
+	d = 1e-3
+	a = packings.addBodies(packings.hexagonal(d, packings.Rectangle((0, 0), (n * d, n * d))), m)
+	b = packings.addBodies(packings.hexagonal(d, packings.Rectangle((-0.82 * n * d, 0.1 * n * d), (0.5 * n * d, 0.6 * n * d)), angle=np.pi / 2), m, velocity=(speed, 0.2 * speed), mask=3)
+	return a + b
+
+
+def state(ids):
+	"""Position, velocity, spin, pressure, plastic strain, links of the bodies, (N, 8)."""
+	from yade import O
+	for e in O.engines:
+		if type(e).__name__ == 'McaEngine':
+			e.sync()
+	rows = []
+	for i in ids:
+		s = O.bodies[i].state
+		rows.append((s.pos[0], s.pos[1], s.vel[0], s.vel[1], s.angVel[2], s.pressure, s.plasticStrain, s.links))
+	return np.array(rows)
