@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The one place where the package's Python modules reach for YADE, so that all else imports without it."""
+import time
 
 
 def yadeClass(name):
@@ -21,3 +22,18 @@ def scene():
 	except ImportError as e:
 		raise ImportError('YADE is not loaded: run the script with pyscripts/yade-mca (%s)' % e) from e
 	return O
+
+
+def steps(n):
+	"""n steps of the scene. True when all were made; False when someone has paused it. Raises what an engine raised.
+
+	O.run(n, True) looks only every 40 ms whether the run has ended; this looks every half millisecond.
+	"""
+	o = scene()
+	end = o.iter + n
+	o.run(n, False)
+	while o.running:
+		time.sleep(5e-4)
+	if o.iter < end:  # an engine refused the step or someone paused: once more, now with the error in this thread
+		o.run(end - o.iter, True)
+	return o.iter >= end

@@ -17,6 +17,7 @@ import numpy as np
 
 from . import checkpoint, measure, scenes
 from ._yade import scene as omega
+from ._yade import steps
 
 __all__ = ['Impact', 'ImpactError']
 
@@ -61,15 +62,8 @@ class Impact:
 			self._sample()
 
 	def _steps(self, n):
-		o = omega()
-		end = o.iter + n
-		o.run(n, False)
-		while o.running:  # O.run(n, True) looks only every 40 ms
-			time.sleep(5e-4)
-		if o.iter < end:  # an engine refused the step or someone paused: once more, now with the error in this thread
-			o.run(end - o.iter, True)
-		if o.iter < end:
-			raise ImpactError('the run was stopped at step %d, %.3f us' % (o.iter, 1e6 * o.time))
+		if not steps(n):
+			raise ImpactError('the run was stopped at step %d, %.3f us' % (omega().iter, 1e6 * omega().time))
 
 	@property
 	def time(self):

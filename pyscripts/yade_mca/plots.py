@@ -17,7 +17,7 @@ from matplotlib.collections import EllipseCollection, PolyCollection
 
 from .tasks.report import writeAtomically
 
-__all__ = ['automataPicture', 'convergence', 'drawAutomata', 'drawGrid', 'gridQuads', 'history', 'pareto', 'save']
+__all__ = ['automataPicture', 'convergence', 'drawAutomata', 'drawGrid', 'drawPareto', 'gridQuads', 'history', 'pareto', 'paretoFront', 'save']
 
 #: unit of the data -> (factor, unit shown)
 SCALES = {'Pa': (1e-9, 'GPa'), 'm': (1e3, 'mm'), 's': (1e6, 'µs'), 'J/kg': (1e-3, 'kJ/kg'), 'J/m': (1e-3, 'kJ/m')}
@@ -165,19 +165,25 @@ def paretoFront(cost, error):
 	return np.array(front, int)
 
 
-def pareto(path, cost, error, labels, groups=None, xlabel='time [s]', ylabel='error', title=''):
-	"""Time against error, log-log, with the Pareto front marked. cost, error (n,); labels n names; groups n names for colours or None."""
+def drawPareto(ax, cost, error, labels, groups=None, colours=None):
+	"""Time against error, log-log, on the axes `ax`, with the front as a line and its points named; groups (n,) names, colours {group: colour}."""
 	cost, error = np.asarray(cost, float), np.asarray(error, float)
 	groups = list(groups) if groups is not None else [''] * len(cost)
+	for g in dict.fromkeys(groups):
+		at = [i for i, x in enumerate(groups) if x == g]
+		ax.loglog(cost[at], error[at], 'o', ms=4, label=g or None, color=(colours or {}).get(g))
+	front = paretoFront(cost, error)
+	ax.loglog(cost[front], error[front], '-', color='0.3', lw=1, zorder=0, label='Pareto front')
+	for i in front:
+		ax.annotate(labels[i], (cost[i], error[i]), fontsize=6, xytext=(3, 3), textcoords='offset points')
+	return front
+
+
+def pareto(path, cost, error, labels, groups=None, xlabel='time [s]', ylabel='error', title=''):
+	"""Time against error, log-log, with the Pareto front marked. cost, error (n,); labels n names; groups n names for colours or None."""
 	with plt.rc_context(STYLE):
 		figure, ax = plt.subplots(figsize=(6.5, 4.5))
-		for g in dict.fromkeys(groups):
-			at = [i for i, x in enumerate(groups) if x == g]
-			ax.loglog(cost[at], error[at], 'o', ms=4, label=g or None)
-		front = paretoFront(cost, error)
-		ax.loglog(cost[front], error[front], '-', color='0.3', lw=1, zorder=0, label='Pareto front')
-		for i in front:
-			ax.annotate(labels[i], (cost[i], error[i]), fontsize=6, xytext=(3, 3), textcoords='offset points')
+		drawPareto(ax, cost, error, labels, groups)
 		ax.set(xlabel=xlabel, ylabel=ylabel, title=title)
 		ax.legend(fontsize=8)
 		return save(figure, path)

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""`bench`: run time against error, cost by phase, cost against size, beside YADE's own laws. Each run is a process of its own; `--out` gets
+
+    bench.jsonl        one record per run and line, as they come
+    bench.json         the whole result; a case that is run again with --only replaces its old records there
+    bench-front.png    time against error with the Pareto front; bench-size.png, bench-phases.png
+
+A record holds the job (case, solver, n, rule, factor, sleeping, account, threads, kind, width, until) and
+
+    stepping           time of all steps by YADE's timers of engines [s]; wall: from the start of the process to the end of the run; built: of the scene
+    steps, automata, cells, simulated [s], error, against, energyError
+    automataNs, cellNs ns per automaton and per cell and step; interfaceNs, phasesPerStep: ns per step
+    phases             ns per automaton (cells, nodes: per cell) and step: neighbours, density, pairs, forces, contacts, fracture, integration, cells, nodes, interface, writeBack, rest
+    memory             peak resident memory of the process [MB]; processorShare: processor time over wall time; load: of the machine before
+    threads, compiler, isa, processor, commit, version; ended: the message when an engine ended the run
+"""
+import json
+import os
+
+from . import bench_google, bench_plan, bench_process, bench_results, environment, registry
+from .registry import UsageError
+from .report import Report, jsonable, writeAtomically
+
+SUMMARY = registry.SUMMARIES['bench']
+KERNELS = 'kernels'
+
+
+def addArguments(parser):
+	parser.add_argument('--quick', action='store_true', help='fewer and coarser runs, two to three minutes')
+	parser.add_argument('--only', metavar='CASE', action='append', help='of %s; may be given several times' % ', '.join((*bench_plan.CASES, KERNELS)))
+	parser.add_argument('--doc', metavar='DIR', help='only make the tables of the documentation from DIR/bench.json')
+
+
+def check(args):
+	for case in args.only or ():
+		if case not in (*bench_plan.CASES, KERNELS):
+			raise UsageError("--only: case '%s' is not one of %s" % (case, ', '.join((*bench_plan.CASES, KERNELS))))
+	if args.threads:
+		raise UsageError('--threads: bench sets the number of threads of each run itself')
+	if args.doc and not os.path.isfile(os.path.join(args.doc, 'bench.json')):
+		raise UsageError("--doc: there is no file '%s'" % os.path.join(args.doc, 'bench.json'))
+
+
+def line(r):
+	"""A record as one line of the screen."""
+	if r.get('failed') or r.get('ended'):
+		return '%-44s ended: %s' % (r['name'], (r.get('failed') or r['ended'])[:110])
+	show = lambda x, form: '-' if x is None else form % x
+	return '%-44s %8.3f s %7d automata %6d cells %6d steps  error %-8s  %6s ns per automaton, %5s per cell  %5.0f MB' % (
+	        r['name'], r['stepping'], r['automata'], r['cells'], r['steps'], show(r.get('error'), '%.2g'), show(r['automataNs'], '%.0f'), show(r['cellNs'], '%.0f'), r['memory'])
+
+
+def kept(path, only):
+	"""(records, kernels) of an older result that this run does not renew."""
+	if not only or not os.path.exists(path):
+		return [], {}
+	with open(path) as f:
+		old = json.load(f)
+	return [r for r in old.get('records', ()) if r['case'] not in only], {} if KERNELS in only else old.get('kernels', {})
+
+
+def run(args, report, progress):
+	if args.doc:
+		from . import bench_doc
+		print('made', ', '.join(bench_doc.write(args.doc)))
+		return
+	jobs = bench_plan.plan(args.quick, args.only, environment.cores())
+	path = args.out and os.path.join(args.out, 'bench.json')
+	old, kernels = kept(path, args.only) if path else ([], {})
+	records = []
+	with progress(len(jobs), 'bench', 'run') as bar:
+		for j in jobs:
+			records.append(bench_process.measured(j))
+			print(line(records[-1]), flush=True)
+			if args.out:
+				with open(os.path.join(args.out, 'bench.jsonl'), 'a' if len(records) > 1 else 'w') as f:
+					f.write(json.dumps(jsonable({k: v for k, v in records[-1].items() if k != 'signal'})) + '\n')
+			bar.update(len(records))
+	bench_results.giveErrors(records)
+	for r in records:
+		r.pop('signal', None)
+	remarks = []
+	if not args.only or KERNELS in args.only:
+		kernels, remarks = bench_google.run(args.quick)
+		bench_google.add(report, kernels)
+	for text in remarks:
+		print('bench:', text)
+	bench_results.add(report, records)
+	report.extra.update(command=command(args), records=old + records, kernels=kernels, remarks=remarks)
+	if args.out:
+		made = written(args, old + records, kernels, remarks)
+		print('%s are in %s' % (', '.join(made), os.path.abspath(args.out)))
+
+
+def written(args, records, kernels, remarks):
+	"""Writes records, result and pictures of all cases that are in the folder now; returns the names of the files."""
+	from . import bench_plots
+	records, whole = jsonable(records), Report('bench')
+	bench_results.add(whole, records)
+	bench_google.add(whole, kernels)
+	whole.extra.update(command=command(args), records=records, kernels=kernels, remarks=remarks, wall=sum(r.get('wall') or 0. for r in records))
+	writeAtomically(os.path.join(args.out, 'bench.jsonl'), ''.join(json.dumps(r) + '\n' for r in records))
+	whole.write(os.path.join(args.out, 'bench.json'))
+	return ['bench.jsonl', 'bench.json', *bench_plots.everything(args.out, records)]
+
+
+def command(args):
+	return ' '.join(['pyscripts/run bench', *['--quick'] * args.quick, *('--only ' + c for c in args.only or ())])
