@@ -111,7 +111,7 @@ void McaDensity::stress(Row& r)
 	McaState&            m = *r.m;
 	const mca::Material& material = *r.material;
 	const Real           J = m.volumeRatio, dt = lastMove, threeG = 3. * material.G, perOldJ = (2. + l.dTheta) / ((2. - l.dTheta) * J);
-	Real                 square = 0, squareOld = 0, coupleOld = 0, coupleNew = 0, fromContacts = 0;
+	Real                 square = 0, squareOld = 0, oldNew = 0, coupleOld = 0, coupleNew = 0, fromContacts = 0;
 	r.plastic = r.coupling = r.friction = r.heated = 0;
 
 	const auto trial = [&](const Side& s, Real twoG) { // this side's stresses before yield; returns dtheta of the pair
@@ -130,19 +130,18 @@ void McaDensity::stress(Row& r)
 		const Real w = (l.flags >> (halfShift + k)) & 1 ? 0.5 : 1., so = s.p->s[s.side] * perOldJ, to = s.p->tau[s.side] * perOldJ, dth = trial(s, s.p->twoG);
 		const Real sn = s.p->s[s.side], tn = s.p->tau[s.side];
 		square += w * fma(sn, sn, tn * tn);
-		squareOld += w * fma(so, so, to * to), coupleOld += w * so * dth, coupleNew += w * sn * dth;
+		squareOld += w * fma(so, so, to * to), oldNew += w * fma(so, sn, to * tn), coupleOld += w * so * dth, coupleNew += w * sn * dth;
 	}
 	vector<Vector2r> heldBefore; // stresses of the contacts before the step [Pa]
-	Real             contactsOld = 0;
 	for (int c = r.firstContact; c < r.lastContact; c++) {
 		const Side& s = contacts[size_t(c)];
 		McaPhys&    p = *s.p;
 		const Real  r2 = vectorTo(*r.state, *rows[size_t(s.other)].state).squaredNorm();
 		heldBefore.emplace_back(p.s[s.side] * perOldJ, p.tau[s.side] * perOldJ);
-		contactsOld += heldBefore.back().squaredNorm();
 		if (p.touching(r2)) {
 			trial(s, p.twoG);
 			fromContacts += fma(p.s[s.side], p.s[s.side], p.tau[s.side] * p.tau[s.side]);
+			oldNew += heldBefore.back().dot(Vector2r(p.s[s.side], p.tau[s.side]));
 		} else
 			p.s[s.side] = p.tau[s.side] = 0;
 	}
@@ -154,14 +153,16 @@ void McaDensity::stress(Row& r)
 	mca::dispatch(material.yield.kind, [&](auto kind) { back = mca::radialReturn<kind.value>(material.yield, sigma, m.plasticStrain, m.temperature, threeG, dt); });
 	m.stressZZ = zn * back.scale;
 	m.plasticStrain += back.dEqps;
-	if (material.yield.kind == mca::YieldKind::johnsonCook) m.temperature = fma(material.yield.heatPerWork * 0.5 * (1. + back.scale) * sigma, back.dEqps, m.temperature);
+	if (material.yield.kind == mca::YieldKind::johnsonCook) m.temperature = fma(material.yield.heatPerWork * back.scale * sigma, back.dEqps, m.temperature);
 	if (material.eos.mieGrueneisen) {
-		const Real q = J * 0.5 * (1. + back.scale) * sigma * back.dEqps / material.eos.rho0;
+		const Real q = J * back.scale * sigma * back.dEqps / material.eos.rho0;
 		m.dissipated += q;
 		r.heated = q * l.cell * material.eos.rho0;
 	}
-	const Real before = std::sqrt(mca::equivalentStress2<2>(squareOld * l.invN, zo)), all = std::sqrt(mca::equivalentStress2<2>((squareOld + contactsOld) * l.invN, zo));
-	r.plastic         = l.cell * J * 0.5 * (all + sigma * back.scale) * back.dEqps;
+	const Real before = std::sqrt(mca::equivalentStress2<2>(squareOld * l.invN, zo));
+	// the stress before the step along the direction of flow: the two need not be parallel
+	const Real along  = sigma > 0 ? (3. * oldNew * l.invN + 1.5 * zo * zn) / sigma : 0.;
+	r.plastic         = l.cell * J * 0.5 * (along + sigma * back.scale) * back.dEqps;
 	const Real vol    = (coupleOld + back.scale * coupleNew) * l.invN + 0.5 * (zo + m.stressZZ) * l.dTheta * (1. / 3.);
 	r.coupling        = l.cell * J * (vol - (threeG > 0 ? l.dTheta * before * before / (2. * threeG) : 0.));
 
