@@ -14,6 +14,7 @@ matplotlib.use('Agg')
 import numpy as np
 from matplotlib import pyplot as plt
 from matplotlib.collections import EllipseCollection, PolyCollection
+from matplotlib.ticker import NullFormatter
 
 from .tasks.report import writeAtomically
 
@@ -165,17 +166,26 @@ def paretoFront(cost, error):
 	return np.array(front, int)
 
 
-def drawPareto(ax, cost, error, labels, groups=None, colours=None):
-	"""Time against error, log-log, on the axes `ax`, with the front as a line and its points named; groups (n,) names, colours {group: colour}."""
+def drawPareto(ax, cost, error, labels, groups=None, colours=None, hollow=None):
+	"""Time against error, log-log, on the axes `ax`, with the front as a line and its points named; returns the front (indices).
+
+	groups (n,) names, colours {group: colour}; hollow (n,) bool: points that are drawn hollow. The axes show whole decades.
+	"""
 	cost, error = np.asarray(cost, float), np.asarray(error, float)
 	groups = list(groups) if groups is not None else [''] * len(cost)
-	for g in dict.fromkeys(groups):
+	for k, g in enumerate(dict.fromkeys(groups)):
 		at = [i for i, x in enumerate(groups) if x == g]
-		ax.loglog(cost[at], error[at], 'o', ms=4, label=g or None, color=(colours or {}).get(g))
+		color, empty = (colours or {}).get(g, 'C%d' % (k % 10)), [i for i in at if hollow is not None and hollow[i]]
+		ax.loglog([cost[i] for i in at if i not in empty], [error[i] for i in at if i not in empty], 'o', ms=4, label=g or None, color=color)
+		ax.loglog(cost[empty], error[empty], 'o', ms=4, mfc='none', mew=0.8, color=color)
 	front = paretoFront(cost, error)
 	ax.loglog(cost[front], error[front], '-', color='0.3', lw=1, zorder=0, label='Pareto front')
 	for i in front:
 		ax.annotate(labels[i], (cost[i], error[i]), fontsize=6, xytext=(3, 3), textcoords='offset points')
+	for v, limit, axis in ((cost, ax.set_xlim, ax.xaxis), (error, ax.set_ylim, ax.yaxis)):
+		v = np.log10(v[np.isfinite(v) & (v > 0)])
+		limit(10**math.floor(v.min() - 0.05), 10**math.ceil(v.max() + 0.05))
+		axis.set_minor_formatter(NullFormatter())
 	return front
 
 

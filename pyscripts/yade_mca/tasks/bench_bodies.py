@@ -67,7 +67,7 @@ def plateWave(job):
 	energies = s.couplers[0].energies if coupled else s.automata.energies
 	first = energies()
 	meter.until(UNTIL + 2 * PERIOD)
-	return dict(meter.record(), built=built, spacing=d, signal=np.array(rows).T.tolist(), energyError=energyError(first, energies()))
+	return dict(meter.record(), built=built, spacing=d, signal=np.array(rows).T.tolist(), energyError=energyError(first, energies()) if job['account'] else None)
 
 
 def penetration(job):

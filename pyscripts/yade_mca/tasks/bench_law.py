@@ -8,6 +8,7 @@ YADE's laws have no plasticity of this kind: CpmMat is elastic with damage, CohF
 import math
 import time
 
+import __main__
 import numpy as np
 
 from .. import _yade, materials, packings
@@ -15,10 +16,10 @@ from .._yade import yadeClass
 from .bench_meter import Meter
 
 D, DT = 1e-3, 1e-8  #: spacing [m]; time step [s], a tenth of the limit
-WAVE, SHEAR, NOISE = 20e-3, 1.5e4, 10.  #: length [m] and rate [1/s] of the shear flow, random speed [m/s]
+WAVE, SHEAR, NOISE = 20e-3, 5e3, 5.  #: length [m] and rate [1/s] of the shear flow, random speed [m/s]
 PEERS = ('CpmMat', 'CohFrictMat')
 ROADS = ('McaEngine', 'Law2', *PEERS)
-SECONDS, REPEATS = 0.3, 5  #: least time of a repeat by the engines' timers, repeats: the best counts
+WARM, WINDOWS, WINDOW, WINDOW_OF_PEERS = 40, 16, 25, 4  #: steps before; windows of one run, steps of each with McaEngine and with the others
 
 
 def loop(physics, law, factor, geometry='Ig2_Sphere_Sphere_ScGeom', d=D):
@@ -97,8 +98,8 @@ def scene(road, count, kind):
 	if road in PEERS:
 		bonded(road, p.positions, v)
 		return None
-	strength = dict(yieldModel='elastic') if kind == 'elastic' else dict(yieldModel='linearHardening', yieldStress=0.8e9, hardeningModulus=0.5e9)
-	if kind == 'fracture': strength.update(fractureStrain=0.025, strengthSpread=0.1)
+	strength = dict(yieldModel='elastic') if kind == 'elastic' else dict(yieldModel='linearHardening', yieldStress=0.1e9, hardeningModulus=0.5e9)
+	if kind == 'fracture': strength.update(fractureStrain=0.02, strengthSpread=0.1)
 	packings.addBodies(p, materials.mcaMat('4340', **strength), velocity=v)
 	if road == 'Law2':
 		ownLoop()
@@ -109,39 +110,32 @@ def scene(road, count, kind):
 
 
 def law(job):
-	"""Best of REPEATS; `flowing`: share of the automata whose plastic strain has grown meanwhile, `broken`: links that broke per automaton."""
+	"""The best of the later windows of one run, without the write-back at its end; `flowing`: share of the automata whose plastic strain has grown in it, `broken`: broken links per automaton."""
 	road, begin = job['solver'], time.perf_counter()
 	O, engine = _yade.scene(), scene(road, job['n'], job['kind'])
-	built = time.perf_counter() - begin
-	Meter(engine).steps(40 if engine else 12)  # all bonds are made, first yield
-	trial = Meter(engine)
-	trial.steps(3)
-	step = trial.record()['stepping'] / 3
-	n = max(4, math.ceil(SECONDS / step / (4 if job.get('short') else 1)))
+	meter, built, windows = Meter(engine), time.perf_counter() - begin, []
+	meter.steps(WARM)  # all bonds are made, first yield
 	before = engine.field('plasticStrain') if engine else None
-	best, found = None, []
-	for _ in range(REPEATS):
-		meter = Meter(engine)
-		meter.steps(n)
-		r = meter.record()
-		found.append(r['automataNs'])
-		if best is None or r['automataNs'] < best['automataNs']: best = r
+	__main__.benchWindow = lambda: windows.append((O.iter, meter.nanoseconds(), time.process_time(), time.perf_counter()))
+	steps = WINDOW if engine else WINDOW_OF_PEERS
+	O.engines = [*O.engines, yadeClass('PyRunner')(command='benchWindow()', iterPeriod=steps, firstIterRun=O.iter + 1)]
+	meter.steps((WINDOWS // 4 if job.get('short') else WINDOWS) * steps + 3)
+	count, found = len(O.bodies), [part(a, b, len(O.bodies)) for a, b in zip(windows, windows[1:])]
+	best = min(found[len(found) // 2:], key=lambda r: r['automataNs'])
 	bonds = len(engine.links()) if engine else O.interactions.countReal()
-	best.update(built=built, bonds=bonds / len(O.bodies), repeatsNs=found, error=None, energyError=None)
+	r = dict(best, automata=count, cells=0, cellNs=None, simulated=O.time, built=built, bonds=bonds / count, windowsNs=[f['automataNs'] for f in found], error=None, energyError=None)
 	if engine:
 		c = engine.counters()
-		best.update(flowing=float((engine.field('plasticStrain') > before).mean()), broken=c['brokenLinks'] / len(O.bodies), contacts=c['contacts'] / len(O.bodies))
-	return best
+		r.update(flowing=float((engine.field('plasticStrain') > before).mean()), broken=c['brokenLinks'] / count, contacts=c['contacts'] / count)
+	return r
 
 
-def ratios(records):
-	"""[(size, kind, threads, road, ns, ns over McaEngine's of the same size, kind and threads)] of records of this case."""
-	ns = {(r['n'], r['kind'], r['threads'], r['solver']): r['automataNs'] for r in records if r.get('automataNs')}
-	rows = []
-	for (n, kind, threads, road), v in ns.items():
-		same = ns.get((n, kind if road == 'Law2' else 'plastic', threads, 'McaEngine'))
-		rows.append((n, kind, threads, road, v, v / same if same else None))
-	return rows
+def part(a, b, count):
+	"""Cost between two windows."""
+	steps = b[0] - a[0]
+	spent = {k: (v - a[1].get(k, 0.)) / steps for k, v in b[1].items()}
+	ns = sum(spent.values())
+	return dict(steps=steps, stepping=1e-9 * ns * steps, automataNs=ns / count, phasesPerStep=spent, phases={k: v / count for k, v in spent.items()}, processorShare=(b[2] - a[2]) / (b[3] - a[3]))
 
 
 CASES = dict(law=law)

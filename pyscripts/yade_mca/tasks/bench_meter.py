@@ -30,7 +30,7 @@ class Meter:
 		self.O.timingEnabled = True
 		if automata: automata.ids  # builds its solver, which is no part of a step
 		self.runs = 0
-		self.first, self.before, self.wall, self.cpu = self.O.iter, self._nanoseconds(), time.perf_counter(), time.process_time()
+		self.first, self.before, self.wall, self.cpu = self.O.iter, self.nanoseconds(), time.perf_counter(), time.process_time()
 
 	def steps(self, n):
 		"""n steps; raises RuntimeError when the scene was paused or an engine refused."""
@@ -45,7 +45,7 @@ class Meter:
 		while self.O.time < t:
 			self.steps(max(1, int((t - self.O.time) / self.O.dt / 1.02)))
 
-	def _nanoseconds(self):
+	def nanoseconds(self):
 		"""Phase -> nanoseconds since the start of the process, before write-back is taken from the rest."""
 		found = {}
 		add = lambda k, v: found.__setitem__(k, found.get(k, 0.) + v)
@@ -72,7 +72,7 @@ class Meter:
 	def record(self):
 		"""Cost since the Meter was made, dict; see bench.py for the keys."""
 		cpu, wall = time.process_time() - self.cpu, time.perf_counter() - self.wall
-		after, steps = self._nanoseconds(), self.O.iter - self.first
+		after, steps = self.nanoseconds(), self.O.iter - self.first
 		spent = {k: v - self.before.get(k, 0.) for k, v in after.items()}
 		stepping = 1e-9 * sum(spent.values())
 		automata = self.automata.count if self.automata else len(self.O.bodies)

@@ -55,7 +55,7 @@ def rulesAndSteps(case, solver, n, factors, **options):
 
 def quick():
 	jobs = series('elasticWave', 'automata', (3, 6, 12)) + series('elasticWave', 'grid', (3, 6, 12)) + series('elasticWave', 'coupled', (6, 12))
-	jobs += series('elasticWave', 'Law2', (6, )) + series('elasticWave', 'CpmMat', (6, )) + rulesAndSteps('elasticWave', 'automata', 6, (0.1, 0.7, 1.))
+	jobs += series('elasticWave', 'Law2', (3, )) + series('elasticWave', 'CpmMat', (3, 6)) + rulesAndSteps('elasticWave', 'automata', 6, (0.1, 0.7, 1.))
 	jobs += [job('elasticWave', 'automata', 12, sleeping=False), job('elasticWave', 'automata', 12, threads=2)]
 	jobs += series('plasticShock', 'automata', (100, 200)) + series('plasticShock', 'grid', (100, 200)) + rulesAndSteps('plasticShock', 'automata', 100, (0.1, 0.9))
 	jobs += series('taylorBar', 'automata', (8, 12, 18))

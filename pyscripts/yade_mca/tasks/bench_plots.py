@@ -28,7 +28,7 @@ def panels(records):
 
 
 def front(path, records):
-	"""Run time against error of every run, one panel per case, log-log, with the Pareto front."""
+	"""Run time against error of every run, one panel per case, log-log, with the Pareto front; runs with an option changed are hollow."""
 	plt, found = plots.plt, panels(records)
 	columns = min(4, max(1, len(found)))
 	rows = -(-len(found) // columns) or 1
@@ -37,7 +37,7 @@ def front(path, records):
 		for ax in axes.flat[len(found):]:
 			ax.axis('off')
 		for ax, (title, some) in zip(axes.flat, found):
-			plots.drawPareto(ax, [r['stepping'] for r in some], [r['error'] for r in some], [r['solver'][0] + ' ' + short(r) for r in some], [r['solver'] for r in some], COLOURS)
+			plots.drawPareto(ax, [r['stepping'] for r in some], [r['error'] for r in some], [short(r) for r in some], [r['solver'] for r in some], COLOURS, [bool(variants(r)) for r in some])
 			ax.set(title=title, xlabel='time of the steps [s]')
 			ax.legend(fontsize=6)
 		for ax in axes[:, 0]:

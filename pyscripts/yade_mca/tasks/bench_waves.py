@@ -80,7 +80,7 @@ def elasticWave(job):
 			x, v = np.append(x, s.grid.view(0, 'x')[height // 2, 1:]), np.append(v, s.grid.view(0, 'vx')[height // 2, 1:])
 	t = s.O.time - 0.5 * s.O.dt
 	there = 0.5 * (v0(x - c * t) + v0(x + c * t))
-	return dict(cost, built=built, error=math.sqrt(((v - there)**2).sum() / (there**2).sum()), energyError=energyError(first, energies()) if energies else None)
+	return dict(cost, built=built, error=math.sqrt(((v - there)**2).sum() / (there**2).sum()), energyError=energyError(first, energies()) if energies and job['account'] else None)
 
 
 def plasticShock(job):
@@ -114,7 +114,7 @@ def plasticShock(job):
 	x = x - face - 0.5 * s.O.dt * v
 	there = np.where(x < ref['D'] * t, SPEED, np.where(x < ref['precursorD'] * t, ref['precursorU'], 0.))
 	keep = x > SPEED * t
-	return dict(cost, built=built, error=abs(v - there)[keep].sum() / there[keep].sum(), energyError=energyError(first, last, abs(last['kinetic'])))
+	return dict(cost, built=built, error=abs(v - there)[keep].sum() / there[keep].sum(), energyError=energyError(first, last, last['kinetic']) if job['account'] else None)
 
 
 CASES = dict(elasticWave=elasticWave, plasticShock=plasticShock)
