@@ -118,13 +118,15 @@ void kernelPressure(benchmark::State& state)
 template <YieldKind kind> void kernelReturn(benchmark::State& state)
 {
 	const Yield         y = steel(kind).yield;
-	std::vector<double> trial(many), eqps(many), scale(many);
+	std::vector<double> trial(many), eqps(many), temperature(many), scale(many);
 	for (int k = 0; k < many; k++)
-		trial[k] = 0.3e9 + 1.5e9 * k / many, eqps[k] = 0.3 * k / many;
+		trial[k] = 0.3e9 + 1.5e9 * k / many, eqps[k] = 0.3 * k / many, temperature[k] = 300. + 400. * k / many;
+	const double *t = trial.data(), *e = eqps.data(), *T = temperature.data();
+	double*       to = scale.data();
 	for (auto _ : state) {
 #pragma omp simd
 		for (int k = 0; k < many; k++)
-			scale[k] = radialReturn<kind>(y, trial[k], eqps[k], 350., 240e9, 1e-8).scale;
+			to[k] = radialReturn<kind>(y, t[k], e[k], T[k], 240e9, 1e-8).scale;
 		benchmark::DoNotOptimize(scale.data());
 		benchmark::ClobberMemory();
 	}

@@ -19,7 +19,7 @@ D, DT = 1e-3, 1e-8  #: spacing [m]; time step [s], a tenth of the limit
 WAVE, SHEAR, NOISE = 20e-3, 5e3, 5.  #: length [m] and rate [1/s] of the shear flow, random speed [m/s]
 PEERS = ('CpmMat', 'CohFrictMat')
 ROADS = ('McaEngine', 'Law2', *PEERS)
-WARM, WINDOWS, WINDOW, WINDOW_OF_PEERS = 40, 16, 25, 4  #: steps before; windows of one run, steps of each with McaEngine and with the others
+WARM, WINDOWS, WINDOW, WINDOW_OF_PEERS = 40, 16, 25, 4  #: steps before; windows of one run, steps of each with McaEngine and with the others (a third, half as many)
 
 
 def loop(physics, law, factor, geometry='Ig2_Sphere_Sphere_ScGeom', d=D):
@@ -114,12 +114,12 @@ def law(job):
 	road, begin = job['solver'], time.perf_counter()
 	O, engine = _yade.scene(), scene(road, job['n'], job['kind'])
 	meter, built, windows = Meter(engine), time.perf_counter() - begin, []
-	meter.steps(WARM)  # all bonds are made, first yield
+	meter.steps(WARM if engine else WARM // 3)  # all bonds are made, first yield
 	before = engine.field('plasticStrain') if engine else None
 	__main__.benchWindow = lambda: windows.append((O.iter, meter.nanoseconds(), time.process_time(), time.perf_counter()))
 	steps = WINDOW if engine else WINDOW_OF_PEERS
 	O.engines = [*O.engines, yadeClass('PyRunner')(command='benchWindow()', iterPeriod=steps, firstIterRun=O.iter + 1)]
-	meter.steps((WINDOWS // 4 if job.get('short') else WINDOWS) * steps + 3)
+	meter.steps((WINDOWS // (1 if engine else 2) // (4 if job.get('short') else 1)) * steps + 3)
 	count, found = len(O.bodies), [part(a, b, len(O.bodies)) for a, b in zip(windows, windows[1:])]
 	best = min(found[len(found) // 2:], key=lambda r: r['automataNs'])
 	bonds = len(engine.links()) if engine else O.interactions.countReal()
