@@ -127,7 +127,7 @@ void McaEngine::ensureBuilt(Scene* scene)
 // After a run the script may have changed bodies: those that differ from what was written are taken over.
 void McaEngine::adoptChanges(Scene* scene)
 {
-	if (writtenPos.empty()) return;
+	if (writtenPos.empty() && !order.empty()) return;
 	vector<int> now;
 	for (const auto& b : scene->bodies->body)
 		if (isAutomaton(b)) now.push_back(b->id);
@@ -260,7 +260,8 @@ void McaEngine::action()
 
 void McaEngine::finish(Scene* scene)
 {
-	const bool last = scene->stopAtIter > 0 && scene->iter + 1 >= scene->stopAtIter;
+	// a step of O.step() is a run of its own
+	const bool last = (scene->stopAtIter > 0 && scene->iter + 1 >= scene->stopAtIter) || !Omega::instance().isRunning();
 	if (last || (writePeriod > 0 && (scene->iter + 1) % writePeriod == 0)) {
 		writeBodies(scene);
 		checkBodies = true;

@@ -3,7 +3,6 @@
 #include "McaMat.hpp"
 #include "McaSolverEngine.hpp"
 #include "automata/solver.hpp"
-#include <array>
 #include <sdk/Blob.hpp>
 #include <core/Timing.hpp>
 
@@ -62,6 +61,7 @@ public:
 		((bool, forcesReady, false, Attr::hidden, "forces of this step are computed; integration has yet to follow"))
 		((sdk::Blob, state, , Attr::hidden, "state of the solver"))
 		((vector<int>, order, , Attr::hidden, "body ids, ascending"))
+		((vector<Vector3r>, viscous, , Attr::hidden, "of setViscous(), kept for the next time that bodies are gathered: id [-] and coefficients along x and y [kg/(m s)]"))
 		,
 		timingDeltas = shared_ptr<TimingDeltas>(new TimingDeltas);
 		,
@@ -84,7 +84,6 @@ private:
 	bool                              loaded = false, stale = false, checkBodies = true;
 	vector<Vector3r>                  writtenPos, writtenVel;
 	vector<Real>                      writtenSpin;
-	vector<std::array<Real, 4>>       viscous; ///< id, bx, by kept until the solver is built
 	int                               energyIndex[12] = { -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1 };
 	mca::automata::Options solverOptions(Scene*) const;
 	void                   gather(Scene*, const mca::automata::Solver* old);

@@ -187,7 +187,7 @@ void McaEngine::setViscous(const vector<int>& ids, const Vector2r& normal)
 		const Real  d     = 2. * static_cast<Sphere*>(b->shape.get())->radius;
 		const Real  width = (hi - lo + d) / ids.size();
 		const Real  bn = mat.eos.rho0 * mat.cP() * width, bt = mat.eos.rho0 * mat.cS() * width;
-		viscous.push_back({ Real(id), alongX ? bn : bt, alongX ? bt : bn });
+		viscous.push_back(Vector3r(Real(id), alongX ? bn : bt, alongX ? bt : bn));
 		if (solver && solver->indexOf(id) >= 0) solver->setDamping(solver->indexOf(id), viscous.back()[1], viscous.back()[2]);
 	}
 }

@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""McaEngine: when the bodies are up to date, the order in which they were made, what O.energy holds."""
+import numpy as np
+import pytest
+
+import engine_scene as scene
+
+
+def behind(e, ids):
+	"""The bodies are not where the solver has them."""
+	return not np.array_equal(scene.states(ids)[:, 0], scene.pick(e, ids, 'x'))
+
+
+def test_bodiesAreWrittenAtTheEndOfARun(plugin):
+	from yade import O
+	ids = scene.block(6, 6, velocity=(5., 1.))
+	e = scene.engine(1e-8)
+	O.run(7, True)
+	assert not behind(e, ids) and e.lastWritten == 6
+	s = O.bodies[int(ids[0])].state
+	assert s.pos[0] == scene.pick(e, ids[:1], 'x')[0] and s.vel[0] == scene.pick(e, ids[:1], 'vx')[0] and s.links > 0
+
+
+def test_periodOfWritingBack(plugin):
+	from yade import O, PyRunner
+	import builtins
+	ids = scene.block(6, 6, velocity=(5., 1.))
+	e = scene.engine(1e-8, writePeriod=5)
+	seen = []
+	builtins.look = lambda: seen.append((O.iter, behind(e, ids)))
+	O.engines = O.engines + [PyRunner(command='look()', iterPeriod=1, firstIterRun=1)]
+	O.run(20, True)
+	fresh = [n for n, late in seen if not late]
+	assert fresh and all((n + 1) % 5 == 0 for n in fresh), seen
+	assert any(late for _, late in seen)
+
+
+def test_syncWritesNow(plugin):
+	from yade import O, PyRunner
+	import builtins
+	ids = scene.block(6, 6, velocity=(5., 1.))
+	e = scene.engine(1e-8)
+	seen = []
+
+	def look():
+		late = behind(e, ids)
+		e.sync()
+		seen.append((late, behind(e, ids), e.lastWritten == O.iter))
+
+	builtins.look = look
+	O.engines = O.engines + [PyRunner(command='look()', iterPeriod=1)]
+	O.run(6, True)
+	assert seen[2:-1] == [(True, False, True)] * (len(seen) - 3), seen
+	assert not seen[-1][1]
+
+
+def test_singleStepsShowOnTheBodies(plugin):
+	"""O.step() is a run of one step: whoever looks afterwards sees it."""
+	from yade import O
+	ids = scene.block(6, 6, velocity=(5., 1.))
+	e = scene.engine(1e-8)
+	for _ in range(3):
+		O.step()
+		assert not behind(e, ids)
+
+
+def test_lookingChangesNoBit(plugin):
+	from yade import O
+	digests = set()
+	for period in (0, 1, 7):
+		O.reset()
+		scene.impact()
+		e = scene.engine(writePeriod=period)
+		O.run(250, True)
+		digests.add(scene.digest(e))
+	O.reset()
+	scene.impact()
+	e = scene.engine()
+	for _ in range(10):
+		O.run(25, True)
+		e.sync(), e.energies(), e.field('pressure')
+	digests.add(scene.digest(e))
+	assert len(digests) == 1
+
+
+ORDERS = (None, lambda n: np.random.default_rng(5).permutation(n), lambda n: np.arange(n)[::-1])
+
+
+def inAllOrders(build, steps):
+	"""Fields after a run, body by body, for bodies made row by row, in random and in reverse order."""
+	from yade import O
+	found = []
+	for order in ORDERS:
+		O.reset()
+		ids = np.concatenate(build(order))
+		e = scene.engine()
+		O.run(steps, True)
+		assert np.array_equal(e.ids, np.sort(ids)) and e.field('plasticStrain').max() > 0.02
+		found.append(np.stack([scene.pick(e, ids, k) for k in ('x', 'y', 'vx', 'vy', 'pressure', 'plasticStrain', 'links')]))
+	return found
+
+
+def test_orderOfTheBodiesChangesNoBit(plugin):
+	def build(order):
+		from yade import O
+		ids = scene.block(20, 12, order=order, constants=dict(scene.HARD, strengthSpread=0., fractureStrain=np.inf))  # strengths are drawn by id
+		for i in ids.tolist():
+			s = O.bodies[i].state
+			s.vel = (80 * np.sin(300 * s.pos[0] + 200 * s.pos[1]), 80 * np.cos(250 * s.pos[1]), 0)
+		return [ids]
+
+	a, b, c = inAllOrders(build, 300)
+	assert np.array_equal(a, b) and np.array_equal(a, c)
+
+
+def test_orderOfTheBodiesAndContacts(plugin):
+	"""Forces of contacts are added up by id, so with them the order counts in the last bit, and no more before the motion becomes chaotic."""
+	found = inAllOrders(lambda order: scene.impact(order=order, constants=dict(scene.HARD, strengthSpread=0.)), 130)
+	scale = abs(found[0]).max(axis=1)[:, None]
+	assert (abs(found[1] - found[0]) < 1e-10 * scale).all() and (abs(found[2] - found[0]) < 1e-10 * scale).all()
+
+
+def test_idsNeedNotBeConsecutive(plugin):
+	from yade import O, utils
+	other = utils.FrictMat()
+	O.materials.append(other)
+	O.bodies.append([utils.sphere((k, 5, 5), 0.1, material=other) for k in range(3)])
+	a = scene.block(5, 5, velocity=(1., 0.))
+	O.bodies.append([utils.sphere((k, 6, 6), 0.1, material=other) for k in range(3)])
+	b = scene.block(5, 5, at=(50e-3, 0), velocity=(2., 0.))
+	e = scene.engine(1e-8)
+	O.run(5, True)
+	assert e.count == len(a) + len(b)
+	assert scene.pick(e, a, 'vx') == pytest.approx(1.) and scene.pick(e, b, 'vx') == pytest.approx(2.)
+	assert O.bodies[0].state.pos == O.bodies[0].state.refPos  # others are left alone
+
+
+def test_everyFieldHasOneNumberPerBody(plugin):
+	ids = scene.block(5, 5)
+	e = scene.engine(1e-8)
+	for name in ('x', 'y', 'vx', 'vy', 'omega', 'angle', 'mass', 'pressure', 'volumeRatio', 'equivalentStress', 'plasticStrain', 'temperature', 'stressZZ', 'fx', 'fy', 'links', 'brokenLinks', 'strength', 'diameter', 'weight', 'material'):
+		f = e.field(name)
+		assert f.shape == (len(ids), ) and np.isfinite(f).all(), name
+	with pytest.raises(RuntimeError, match="'speed' is unknown; known are"):
+		e.field('speed')
+
+
+def test_energyEntries(plugin):
+	"""O.energy holds each item of the account under a name of its own; the sum of all is the kinetic energy at the start."""
+	from yade import O
+	O.trackEnergy = True
+	scene.impact(speed=200.)
+	e = scene.engine()
+	O.run(300, True)
+	own, tracked = e.energies(), dict(O.energy.items())
+	for name in 'kinetic', 'volumetric', 'deviatoric', 'plastic', 'viscous', 'friction', 'fracture', 'coupling', 'boundary':
+		assert tracked['mca' + name.capitalize()] == own[name], name
+	assert tracked['mcaExternal'] == -own['external']
+	assert O.energy.total() == pytest.approx(own['total'], rel=1e-12)
+	assert abs(own['bookedError']) < 1e-10 * own['kineticStart']
+	assert min(own[k] for k in ('plastic', 'viscous', 'friction')) > 0
+
+
+def test_energySumOfAPlasticBlock(plugin):
+	"""The sum from state functions and dissipations is that at the start within 0.1 % at the default step, and nearer with a smaller one."""
+	from yade import O
+	off = []
+	for factor in (0.4, 0.1):
+		O.reset()
+		ids = scene.block(10, 10, rim='full', constants=dict(scene.HARD, fractureStrain=np.inf, spallStrength=np.inf))
+		for i in ids.tolist():
+			s = O.bodies[i].state
+			s.vel = (60 * np.sin(300 * s.pos[0]) + 60 * np.cos(260 * s.pos[1]), -60 * np.sin(280 * s.pos[1] + 1), 0)
+		e = scene.engine(account=True, dtFactor=factor)
+		while O.time < 1e-5:
+			O.run(20, True)
+		now = e.energies()
+		assert now['plastic'] > 0.2 * now['kineticStart']
+		off.append(abs(now['total'] / now['kineticStart'] - 1))
+	assert off[0] < 1e-3 and off[1] < 0.5 * off[0]
