@@ -18,7 +18,8 @@ Account Solver::account() const
 			const size_t i = b * blockSize + l;
 			v += m.eos.mieGrueneisen ? S.cell[i] * m.eos.rho0 * S.heat[i] : stateEnergy(i, S.J[i]);
 			if (S.jOff[i] > 0. && S.blocks[b].contact) v += stateEnergy(i, 1. / (1. + scratch.sum[i] / nLinks)); // affine rule: contacts have a volume of their own
-			if (m.G > 0) q += S.cell[i] * S.J[i] * sqr(equivalentStress(i)) / (6. * m.G);
+			// the pairs stand for the volume Omega0/(6 invN), which on weighted rims is not the cell
+			if (m.G > 0) q += Lattice<2>::cell(S.diameter[i]) / (nLinks * S.invN[i]) * S.J[i] * sqr(equivalentStress(i)) / (6. * m.G);
 			if (S.flags[i] & tiedBit) { // its mass is on the grid; a free spin is its own
 				if (S.ar[i] > 0) k += 0.5 * S.inertia[i] * sqr(S.omega[i]), a += S.inertia[i] * S.omega[i];
 				continue;
@@ -33,7 +34,7 @@ Account Solver::account() const
 	for (size_t c = 0; c < contacts.size(); c++) {
 		const int32_t i = contacts.owner[c];
 		const double  G = S.materials[S.species[S.speciesOf(i)].material].G;
-		if (G > 0) A.deviatoric += S.cell[i] * S.invN[i] * (sqr(contacts.s[c]) + sqr(contacts.tau[c])) / (S.J[i] * 2. * G);
+		if (G > 0) A.deviatoric += Lattice<2>::cell(S.diameter[i]) / nLinks * (sqr(contacts.s[c]) + sqr(contacts.tau[c])) / (S.J[i] * 2. * G);
 	}
 	return A;
 }

@@ -43,10 +43,10 @@ namespace {
 		if (contactSum)
 			for (int l = 0; l < blockSize; l++)
 				sums[l] += contactSum[base + l];
-		double stiffest = 0, closing = 0;
+		double stiffest = 0, closing = 0, widest = 1.;
 		const double clampAt = eos.clampStrain();
 		int clampCount = 0, badCount = 0;
-#pragma omp simd reduction(max : stiffest, closing) reduction(+ : clampCount, badCount)
+#pragma omp simd reduction(max : stiffest, closing, widest) reduction(+ : clampCount, badCount)
 		for (int l = 0; l < blockSize; l++) {
 			const double Jn  = volumeRatio<rule, 2>((sums[l] - rest[l]) * invN[l]);
 			const double Jo  = init ? Jn : J[l];
@@ -59,12 +59,13 @@ namespace {
 			stiff[l]         = (tangent(eos, eps) + G43) * invRho / Jn;
 			stiffest         = max(stiffest, stiff[l]);
 			closing          = max(closing, -dTheta[l]);
+			widest           = max(widest, Jn);
 			clampCount += eps < clampAt ? 1 : 0;
 			badCount += (Jn > 0. && Jn < 1e6) ? 0 : 1; // also catches NaN
 		}
 		for (int l = 0; l < blockSize; l++)
 			S.node[(base + l) * 8 + 5] = dTheta[l];
-		out.nearest = nearest, out.stiffest = stiffest, out.closing = closing, out.clamped = clampCount;
+		out.nearest = nearest, out.stiffest = stiffest, out.closing = closing, out.widest = widest, out.clamped = clampCount;
 		if (badCount)
 			for (int l = 0; l < B.count && out.bad < 0; l++)
 				if (!(J[l] > 0. && J[l] < 1e6)) out.bad = int64_t(base) + l;
@@ -84,7 +85,7 @@ namespace {
 		double*         heat = mie ? S.heat.data() + base : nullptr;
 		double *        J = S.J.data() + base, *dTheta = S.dTheta.data() + base, *P = S.P.data() + base, *h = S.h.data() + base, *jOff = S.jOff.data() + base;
 		double *        rest = S.rest.data() + base, *record = S.node.data() + base * 8, *push = S.push.data() + base * 4;
-		double          nearest = 1e300, stiffest = 0, closing = 0;
+		double          nearest = 1e300, stiffest = 0, closing = 0, widest = 1.;
 		const double    clampAt = eos.clampStrain();
 		int             clampCount = 0, badCount = 0;
 		alignas(64) double txx[blockSize], txy[blockSize], tyx[blockSize], tyy[blockSize], near[blockSize], spanX[blockSize], spanXY[blockSize], spanY[blockSize];
@@ -116,7 +117,7 @@ namespace {
 				jOff[l]          = det > minVolume ? 1. / det : 0.;
 				rest[l]          = jOff[l] > 0. ? 1. - jOff[l] * det : 0.; // last bit of J = 1 at rest: no pressure, whether asleep or awake
 			}
-#pragma omp simd reduction(max : stiffest, closing) reduction(+ : clampCount, badCount) reduction(min : nearest)
+#pragma omp simd reduction(max : stiffest, closing, widest) reduction(+ : clampCount, badCount) reduction(min : nearest)
 		for (int l = 0; l < blockSize; l++) {
 			const double Fxx = txx[l], Fxy = txy[l], Fyx = tyx[l], Fyy = tyy[l], off = jOff[l];
 			const double det = (Fxx * Fyy - Fxy * Fyx) * scale;
@@ -135,6 +136,7 @@ namespace {
 			const double one = max(off * off * spread * scale * (1. / 6.), 1.), bulk = min(one * one, 4.); // covers edges and corners of free surfaces up to nu = 0.49, measured
 			stiffest          = max(stiffest, (tangent(eos, eps) * bulk + G43 * max(0.5 * d2 / near[l], 1.)) * invRho / Jn);
 			closing  = max(closing, -dTheta[l]);
+			widest   = max(widest, Jn);
 			nearest  = min(nearest, near[l] / d2);
 			clampCount += eps < clampAt ? 1 : 0;
 			badCount += (Jn > 0. && Jn < 1e6) ? 0 : 1;
@@ -152,7 +154,7 @@ namespace {
 				clampCount += eps < clampAt ? 1 : 0;
 			}
 		}
-		out.nearest = nearest, out.stiffest = stiffest, out.closing = closing, out.clamped = clampCount;
+		out.nearest = nearest, out.stiffest = stiffest, out.closing = closing, out.widest = widest, out.clamped = clampCount;
 		if (badCount)
 			for (int l = 0; l < B.count && out.bad < 0; l++)
 				if (!(J[l] > 0. && J[l] < 1e6)) out.bad = int64_t(base) + l;

@@ -86,7 +86,10 @@ void Solver::keepVolume(size_t i)
 		}
 	const double det = (Fxx * Fyy - Fxy * Fyx) / (9. * sqr(S.diameter[i]));
 	S.jOff[i] = det > minVolume ? S.J[i] / det : 0.;
-	if (S.jOff[i] == 0.) unsettled.push_back(int32_t(i));
+	if (S.jOff[i] > 0.) return;
+	unsettled.push_back(int32_t(i));
+	// what its contacts had pressed goes: from now on they carry the volume that the links had
+	if (options.account && contacts.size() && S.blocks[i / blockSize].contact) sums.fracture += stateEnergy(i, 1. / (1. + scratch.sum[i] / nLinks));
 }
 
 // The rules that add up distances: the sum at rest takes over what the broken links held.

@@ -11,6 +11,7 @@ namespace mca::automata {
 struct BlockResult {
 	double stiffest = 0; ///< max of (tangent + 4G/3) / (rho0 J) [m2/s2]
 	double closing  = 0; ///< max of -dTheta [-]
+	double widest   = 1; ///< max of J, at least 1 [-]
 	double nearest  = 1e300; ///< min of (r/d)^2 over links [-]
 	double criterion = 0; ///< max of Store::criterion [-]
 	int64_t clamped = 0; ///< automata beyond the clamp of the equation of state

@@ -149,7 +149,8 @@ void Solver::computeForces()
 		const Material& m  = S.materialOf(B);
 		const double    cP = std::sqrt(results[b].stiffest), d = S.species[B.species].d;
 		const double    dv = lastMove > 0 ? results[b].closing * d / lastMove : 0.;
-		limit              = std::min(limit, stableStep(d, cP, m.cS(), m.viscosity.active() ? m.viscosity.linear + m.viscosity.quadratic * dv / cP : 0.));
+		// what turns an automaton against its neighbours grows with J: shear stresses are those of the present volume
+		limit              = std::min(limit, stableStep(d, cP, m.cS() * std::sqrt(results[b].widest), m.viscosity.active() ? m.viscosity.linear + m.viscosity.quadratic * dv / cP : 0.));
 	}
 	if (contactSpeed2 > 0) { // pairs that meet: no more than an eighth of their distance in a step
 		double d = 1e300;

@@ -20,7 +20,7 @@ namespace {
 		alignas(64) double square[blockSize], factor[blockSize], old2[blockSize], oldNew[blockSize], coupleOld[blockSize], coupleNew[blockSize];
 		double          plastic = 0, couple = 0, heated = 0;
 		double*         heat   = m.eos.mieGrueneisen ? S.heat.data() + base : nullptr;
-		const double    perRho = 1. / m.eos.rho0;
+		const double    perRho = 1. / m.eos.rho0, sixth = Lattice<2>::cell(d) / nLinks;
 		for (int g = 0; g < blockSize; g += lanes) {
 			const v8 X = load(xi + g), Y = load(yi + g), VX = load(vxi + g), VY = load(vyi + g), W = load(wi + g), th = load(ti + g);
 			const v8 perOldJ = (2. + th) / ((2. - th) * load(J + g)); // 1/J of the step before
@@ -84,10 +84,11 @@ namespace {
 				// the stress before the step along the direction of flow: the two need not be parallel
 				const double both  = (3. * (oldNew[l] + (contactOld ? contactOld[base + l] : 0.)) * invN[l] + 1.5 * zo * zn);
 				const double along = trial > 0. ? both / trial : 0.;
-				plastic += cell[l] * J[l] * 0.5 * (along + trial * r.scale) * r.dEqps;
+				const double pairs = sixth / invN[l]; // volume the pairs stand for: the cell, but on weighted rims
+				plastic += pairs * J[l] * 0.5 * (along + trial * r.scale) * r.dEqps;
 				// pair work that goes into volume change rather than into the stored deviatoric energy J sigma_eq^2/(6G); zero in a uniform field
 				const double vol = (coupleOld[l] + r.scale * coupleNew[l]) * invN[l] + 0.5 * (zo + szz[l]) * ti[l] * (1. / 3.);
-				couple += cell[l] * J[l] * (vol - (threeG > 0 ? ti[l] * before * before / (2. * threeG) : 0.));
+				couple += pairs * J[l] * (vol - (threeG > 0 ? ti[l] * before * before / (2. * threeG) : 0.));
 			}
 		}
 		if (scaleOut)

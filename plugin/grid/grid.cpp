@@ -158,8 +158,8 @@ namespace {
 		CellConstants c = cellConstants(b, 0.);
 		CellState     s = { 0, 0, 0, 0, 0, 0, 0 };
 		if (!b.material.viscosity.active())
-			return updateCell<YieldKind::elastic, GridViscosity::none, false, false>(c, b.positionPattern(i, j), b.velocityPattern(i, j), b.restArea[b.cell(i, j)], 0., s).rate;
-		return updateCell<YieldKind::elastic, GridViscosity::scalar, false, false>(c, b.positionPattern(i, j), b.velocityPattern(i, j), b.restArea[b.cell(i, j)], 0., s).rate;
+			return updateCell<YieldKind::elastic, GridViscosity::none, true, false>(c, b.positionPattern(i, j), b.velocityPattern(i, j), b.restArea[b.cell(i, j)], 0., s).rate;
+		return updateCell<YieldKind::elastic, GridViscosity::scalar, true, false>(c, b.positionPattern(i, j), b.velocityPattern(i, j), b.restArea[b.cell(i, j)], 0., s).rate;
 	}
 }
 

@@ -166,9 +166,11 @@ inline CellForces updateCell(const CellConstants& c, const CellPattern& p, const
 	const double lambda = trace + std::sqrt(max(trace * trace - area * area, 0.));
 	const double u      = lambda * invArea * invArea / rho;
 	const double uv     = u * viscous;
+	// the pattern that changes sign from node to node: 4 k/(rho A) with the hourglass stiffness k above; decides beyond a multiplier of about 2
+	const double stiffest = hourglass ? max(modulus, c.hourglass * (1. / 3.) * (kt + (7. / 3.) * c.G)) : modulus;
 	// a cell turned inside out, or any non-finite number in its stress, shows in the rate
 	const double poison = 0. * (sx + sy + k + (rx + ry) + stressFactor);
-	f.rate              = area > 0. ? uv + std::sqrt(modulus * u + uv * uv) + poison : std::numeric_limits<double>::infinity();
+	f.rate              = area > 0. ? uv + std::sqrt(stiffest * u + uv * uv) + poison : std::numeric_limits<double>::infinity();
 	f.pressure          = pr;
 	return f;
 }

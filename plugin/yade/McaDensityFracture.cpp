@@ -64,7 +64,9 @@ void McaDensity::keepVolume(int i)
 		}
 		const Real det = (Fxx * Fyy - Fxy * Fyx) / (9. * sqr(r.d));
 		l.offset       = det > mca::automata::minVolume ? J / det : 0.;
-		if (l.offset == 0) unsettled.push_back(i);
+		if (l.offset > 0) return;
+		unsettled.push_back(i);
+		fracture += stateEnergy(r, 1. / (1. + l.contactSum / nLinks)); // what its contacts had pressed goes: from now on they carry the volume that the links had
 		return;
 	}
 	const bool inverse = l.rule == int(VolumeRule::inversePower);

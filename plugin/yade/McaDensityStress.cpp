@@ -101,7 +101,7 @@ void McaDensity::volume(Row& r, bool withContacts)
 		l.share = pressureShare(l.rule, P, Jn, l.cell * l.invN);
 	const Real cP = std::sqrt(stiff), dv = lastMove > 0 ? std::max(-l.dTheta, Real(0)) * r.d / lastMove : 0.;
 	const auto& q = r.material->viscosity;
-	r.limit       = mca::stableStep(r.d, cP, r.material->cS(), q.active() ? q.linear + q.quadratic * dv / cP : 0.);
+	r.limit       = mca::stableStep(r.d, cP, r.material->cS() * std::sqrt(std::max(Jn, Real(1))), q.active() ? q.linear + q.quadratic * dv / cP : 0.);
 }
 
 // Trial stresses (7)-(9) of this side of all pairs, radial return (10)-(11), fracture criteria, friction.
@@ -162,9 +162,10 @@ void McaDensity::stress(Row& r)
 	const Real before = std::sqrt(mca::equivalentStress2<2>(squareOld * l.invN, zo));
 	// the stress before the step along the direction of flow: the two need not be parallel
 	const Real along  = sigma > 0 ? (3. * oldNew * l.invN + 1.5 * zo * zn) / sigma : 0.;
-	r.plastic         = l.cell * J * 0.5 * (along + sigma * back.scale) * back.dEqps;
+	const Real pairs  = Lattice<2>::cell(r.d) / (nLinks * l.invN); // volume the pairs stand for: the cell, but on weighted rims
+	r.plastic         = pairs * J * 0.5 * (along + sigma * back.scale) * back.dEqps;
 	const Real vol    = (coupleOld + back.scale * coupleNew) * l.invN + 0.5 * (zo + m.stressZZ) * l.dTheta * (1. / 3.);
-	r.coupling        = l.cell * J * (vol - (threeG > 0 ? l.dTheta * before * before / (2. * threeG) : 0.));
+	r.coupling        = pairs * J * (vol - (threeG > 0 ? l.dTheta * before * before / (2. * threeG) : 0.));
 
 	const Real scale = back.scale * J;
 	for (const Side& s : r.link)

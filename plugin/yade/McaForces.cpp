@@ -4,6 +4,7 @@
 #include "McaDensity.hpp"
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
+#include <pkg/common/Sphere.hpp>
 
 namespace yade {
 YADE_PLUGIN((McaForces));
@@ -118,7 +119,8 @@ void McaDensity::stateEnergies(const Scene& scene, Real& volumetric, Real& devia
 			square += (p->linked && p->half ? 0.5 : 1.) * (sqr(p->s[side]) + sqr(p->tau[side]));
 		}
 		// J sigma_eq^2/(6G) of links and szz; stresses stand times J
-		deviatoric += l.cell * (square * l.invN / (2. * c.G * m->volumeRatio) + m->volumeRatio * sqr(m->stressZZ) / (4. * c.G));
+		const Real share = mca::Lattice<2>::cell(2. * static_cast<Sphere*>(b->shape.get())->radius) / nLinks; // of volume, of each pair
+		deviatoric += share * (square / (2. * c.G * m->volumeRatio) + m->volumeRatio * sqr(m->stressZZ) / (4. * c.G * l.invN));
 	}
 	volumetric -= heated;
 }

@@ -166,3 +166,21 @@ TEST(GridStep, OpenInteriorNodeMovesAsAClosedOne)
 	EXPECT_GE(b.openNode(0, 7, 11), 0);
 	EXPECT_EQ(a.openNode(0, 7, 11), -1);
 }
+
+TEST(GridStep, StableAtTheLimitWithAnyHourglassStiffness)
+{
+	Material m  = steel(YieldKind::elastic);
+	m.viscosity = { 0., 0. };
+	for (const double hourglass : { 0., 1., 2.5, 4. }) {
+		BlockOptions o;
+		o.hourglass = hourglass;
+		Grid g({ true, false, 0.9 });
+		g.addRectangle(m, line(0, 0.012, 12), line(0, 0.012, 12), o);
+		std::mt19937                           r(3);
+		std::uniform_real_distribution<double> u(-1e-3, 1e-3);
+		g.setVelocity(0, [&](double, double) { return std::array<double, 2> { u(r), u(r) }; });
+		const double start = g.energy().kinetic;
+		for (int k = 0; k < 2000; k++) g.step(0.999 * g.criticalTimeStep());
+		EXPECT_LT(g.energy().kinetic, 10 * start) << hourglass;
+	}
+}
