@@ -16,9 +16,9 @@ def madeBy(records):
 	"""One line: commits, machine, load of these records."""
 	if not records:
 		return ''
-	one = lambda k: ', '.join(sorted({str(r[k])[:11] if k == 'commit' else str(r[k]) for r in records if r.get(k)}))
+	one = lambda k: ', '.join(sorted({str(r[k])[:10] if k == 'build' else str(r[k]) for r in records if r.get(k)}))
 	loads = [r['load'] for r in records if r.get('load') is not None]
-	return '\nMade by ``pyscripts/run bench`` (%s; %s; %s, %s; load of the machine before a run %.1f to %.1f).\n' % (one('commit'), one('processor'), one('compiler'), one('isa'), min(loads), max(loads))
+	return '\nMade by ``pyscripts/run bench`` (libraries of commit %s; %s; %s, %s; load of the machine before a run %.1f to %.1f).\n' % (one('build'), one('processor'), one('compiler'), one('isa'), min(loads), max(loads))
 
 
 def law(records):
@@ -63,7 +63,13 @@ def phases(records):
 	some = shown(records)
 	names = [p for p in PHASES if any((r['phasesPerStep'].get(p) or 0) > 0 for r in some)]
 	rows = [(TITLES[r['case']], r['solver'], '%d' % r['n'], '%d' % r['automata'], '%d' % r['cells'], *(number(r['phases'].get(p), 1) for p in names)) for r in some]
-	return listTable('Nanoseconds per automaton (cells, nodes: per cell) and step', ('case', 'solver', 'N', 'automata', 'cells', *names), rows) + madeBy(some)
+	return listTable('Nanoseconds per automaton (cells, nodes: per cell) and step', ('case', 'solver', 'N', 'automata', 'cells', *names), rows) + started(records) + madeBy(some)
+
+
+def started(records):
+	"""Start-up as a sentence."""
+	times = sorted(r['start'] for r in records if r.get('start'))
+	return '\nStart-up of Python, YADE and the plugin: %.1f s (median of %d processes).\n' % (times[len(times) // 2], len(times)) if times else ''
 
 
 def equal(records):

@@ -3,6 +3,7 @@
 import os
 import re
 import resource
+import sys
 import time
 from functools import lru_cache
 from pathlib import Path
@@ -118,8 +119,8 @@ def compiler():
 
 def machine():
 	"""Facts that belong to every record."""
-	return dict(threads=environment.threads(), compiler=compiler(), isa=environment.isa(), processor=environment.processor(), commit=environment.commit(), version=environment.version(),
-	            load=os.getloadavg()[0])
+	return dict(threads=environment.threads(), compiler=compiler(), isa=environment.isa(), processor=environment.processor(), commit=environment.commit(), build=getattr(sys.modules.get('yade_mca'), 'commit', None),
+	            version=environment.version(), load=os.getloadavg()[0])
 
 
 def peakMemory():

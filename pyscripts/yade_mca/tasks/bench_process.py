@@ -32,11 +32,13 @@ def execute(job):
 		return case(dict(job, **changes))
 
 	record = dict(job, name=name(job), **bench_meter.machine())
+	since = lambda: time.time() - job['started'] if 'started' in job else None
+	record['start'] = since()
 	try:
 		found = [made()]
 	except RuntimeError as e:  # what engines raise
 		return dict(record, ended=' '.join(str(e).split()), memory=bench_meter.peakMemory())
-	record.update(wall=time.time() - job['started'] if 'started' in job else None, memory=bench_meter.peakMemory())
+	record.update(wall=since(), memory=bench_meter.peakMemory())
 	if job['case'] != 'law':
 		while len(found) < REPEATS and sum(f['stepping'] for f in found) < SHORT:
 			found.append(made())
