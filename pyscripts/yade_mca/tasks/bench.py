@@ -7,11 +7,12 @@
 
 A record holds the job (case, solver, n, rule, factor, sleeping, account, threads, kind, width, until) and
 
-    stepping           time of all steps by YADE's timers of engines [s]; wall: from the start of the process to the end of the run; start: of YADE and the plugin; built: of the scene
+    stepping           time of all steps [s]: `timers` (YADE's, of its engines) or, on 1 thread, `processor` (processor time) when that is less because other processes ran
+    wall               [s] from the start of the process to the end of the run; start: of YADE and the plugin; built: of the scene
     steps, automata, cells, simulated [s], error, against, energyError
     automataNs, cellNs ns per automaton and per cell and step; interfaceNs, phasesPerStep: ns per step
     phases             ns per automaton (cells, nodes: per cell) and step: neighbours, density, pairs, forces, contacts, fracture, integration, cells, nodes, interface, writeBack, rest
-    memory             peak resident memory of the process [MB]; processorShare: processor time over wall time; load: of the machine before
+    memory             peak resident memory of the process [MB]; processorShare: processor time over wall time of the run; load: of the machine before
     threads, compiler, isa, processor, commit (of the source tree), build (commit of the libraries), version; ended: the message when an engine ended the run
 """
 import json

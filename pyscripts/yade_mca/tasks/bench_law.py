@@ -13,7 +13,7 @@ import numpy as np
 
 from .. import _yade, materials, packings
 from .._yade import yadeClass
-from .bench_meter import Meter
+from .bench_meter import Meter, withoutOthers
 
 D, DT = 1e-3, 1e-8  #: spacing [m]; time step [s], a tenth of the limit
 WAVE, SHEAR, NOISE = 20e-3, 5e3, 5.  #: length [m] and rate [1/s] of the shear flow, random speed [m/s]
@@ -134,8 +134,12 @@ def part(a, b, count):
 	"""Cost between two windows."""
 	steps = b[0] - a[0]
 	spent = {k: (v - a[1].get(k, 0.)) / steps for k, v in b[1].items()}
+	timers, processor = 1e-9 * sum(spent.values()) * steps, b[2] - a[2]
+	stepping = withoutOthers(timers, processor)
+	spent = {k: v * stepping / timers for k, v in spent.items()}
 	ns = sum(spent.values())
-	return dict(steps=steps, stepping=1e-9 * ns * steps, automataNs=ns / count, phasesPerStep=spent, phases={k: v / count for k, v in spent.items()}, processorShare=(b[2] - a[2]) / (b[3] - a[3]))
+	return dict(steps=steps, stepping=stepping, timers=timers, processor=processor, processorShare=processor / (b[3] - a[3]), automataNs=ns / count, phasesPerStep=spent,
+	            phases={k: v / count for k, v in spent.items()})
 
 
 CASES = dict(law=law)

@@ -75,7 +75,9 @@ class Meter:
 		cpu, wall = time.process_time() - self.cpu, time.perf_counter() - self.wall
 		after, steps = self.nanoseconds(), self.O.iter - self.first
 		spent = {k: v - self.before.get(k, 0.) for k, v in after.items()}
-		stepping = 1e-9 * sum(spent.values())
+		timers = 1e-9 * sum(spent.values())
+		stepping = withoutOthers(timers, cpu)
+		spent = {k: v * stepping / timers if timers else v for k, v in spent.items()}
 		automata = self.automata.count if self.automata else len(self.O.bodies)
 		cells = self.grid.count if self.grid else 0
 		if self.automata and automata:
@@ -85,7 +87,7 @@ class Meter:
 		ofAutomata = sum(v for k, v in spent.items() if k not in GRID + INTERFACE)
 		perStep = lambda ns, n: ns / n / steps if n and steps else None
 		return dict(
-		        automata=automata, cells=cells, steps=steps, simulated=self.O.time, stepping=stepping, measured=wall, processorShare=cpu / wall if wall else None,
+		        automata=automata, cells=cells, steps=steps, simulated=self.O.time, stepping=stepping, timers=timers, processor=cpu, processorShare=cpu / wall if wall else None,
 		        automataNs=perStep(ofAutomata, automata), cellNs=perStep(ofGrid, cells), interfaceNs=perStep(spent.get('interface', 0.), 1) if self.couplers else None,
 		        phases={k: perStep(v, cells if k in GRID and cells else automata or cells) for k, v in spent.items()}, phasesPerStep={k: perStep(v, 1) for k, v in spent.items()},
 		        awake=self.awake(), runs=self.runs
@@ -104,6 +106,11 @@ class Meter:
 			self.automata.sync()
 			best = min(best, time.perf_counter_ns() - start)
 		return best
+
+
+def withoutOthers(timers, processor):
+	"""Time of the steps [s]: by the timers or, on one thread, the processor time when it is less. Then other processes had the processor in between."""
+	return min(timers, processor) if environment.threads() == 1 else timers
 
 
 @lru_cache(maxsize=None)
