@@ -135,7 +135,8 @@ void Solver::settleVolumes()
 			else contacts.rest[c] = mean ? r0 / (1. + need) : r0 * std::sqrt(1. + need);
 		}
 		if (holds) continue;
-		if (options.account) sums.fracture += stateEnergy(i, J) - stateEnergy(i, 1.);
+		// the internal energy of Mie-Grueneisen materials stays where it is
+		if (options.account && !S.materialOf(S.blocks[i / blockSize]).eos.mieGrueneisen) sums.fracture += stateEnergy(i, J) - stateEnergy(i, 1.);
 		S.J[i] = 1.;
 	}
 	unsettled.clear();

@@ -106,7 +106,7 @@ void McaDensity::settleVolumes(bool account)
 			else s.p->rest[s.side] = mean ? r0 / (1. + need) : r0 * std::sqrt(1. + need);
 		}
 		if (holds) continue;
-		if (account) fracture += stateEnergy(r, J) - stateEnergy(r, 1.);
+		if (account && !r.material->eos.mieGrueneisen) fracture += stateEnergy(r, J) - stateEnergy(r, 1.);
 		r.m->volumeRatio = 1.;
 	}
 	unsettled.clear();
