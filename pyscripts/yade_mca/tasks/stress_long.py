@@ -18,14 +18,16 @@ from .stress_scene import D, PITCH, Trial, advance, automataTrial, elastic, grid
 
 DRIFT = 1e-4  #: largest change of the mean energy over a long run [-]
 NOISE = 0.01  #: of the lattices behind whose shocks the shortest waves are measured: without it symmetry would hide them
+#: linear viscosity of the long runs, a hundredth of the default: without any, free surfaces of the affine rule feed energy into waves, see plugin/doc/stability.rst
+DAMPED = dict(viscosityLinear=0.0025)
 SPEED = 0.1  #: of the piston over the bulk sound speed
 
 
-def meanEnergy(t, samples=100):
+def meanEnergy(t, samples=400):
 	"""Independent energy sum averaged over some oscillations: velocities are half a step away from the positions."""
 	total = []
 	for _ in range(samples):
-		advance(35)
+		advance(11)
 		before = t.balance()
 		omega().step()
 		b = t.balance()
@@ -44,11 +46,12 @@ def drift(t, steps):
 	return t.measures(value=abs(last / first - 1), atMost=DRIFT, unit='drift of the mean energy over %g steps' % steps)
 
 
-def freeAutomata(factor, steps, **changes):
-	t = automataTrial(contacts=False, dtFactor=factor)
-	m = elastic(**changes)
+def freeAutomata(factor, steps, rule='affine', **changes):
+	t = automataTrial(contacts=False, dtFactor=factor, volumeRule=rule)
+	m = elastic(**dict(DAMPED, **changes))
 	p = hexagonal(D, disc((0, 0), 7.4 * D), rim='full')
-	v = 1e-4 * m.cS * np.random.default_rng(2).standard_normal((len(p), 2))
+	x, y = p.positions.T
+	v = 1e-4 * m.cS * np.stack((np.sin(200 * x) * np.cos(150 * y), np.cos(180 * x + 100 * y)), axis=1) + 1e-6 * m.cS * np.random.default_rng(2).standard_normal((len(p), 2))
 	addBodies(p, m, velocity=v - v.mean(axis=0), angularVelocity=1e-4 * m.cS / (7 * D))
 	return drift(t, steps)
 
@@ -56,12 +59,12 @@ def freeAutomata(factor, steps, **changes):
 def freeGrid(factor, steps):
 	m = elastic()
 	r = np.random.default_rng(2)
-	return drift(gridTrial([(m, 14, 14)], lambda k, x, y: 1e-4 * m.cS * np.array((np.cos(300 * x) * np.sin(200 * y), np.sin(250 * x + 200 * y))) + 1e-6 * m.cS * r.standard_normal((2, *x.shape)), dtFactor=factor, hourglass=0.), steps)
+	return drift(gridTrial([(m, 14, 14)], lambda k, x, y: 1e-5 * m.cS * np.array((np.cos(300 * x) * np.sin(200 * y), np.sin(250 * x + 200 * y))) + 1e-7 * m.cS * r.standard_normal((2, *x.shape)), dtFactor=factor, hourglass=0.), steps)
 
 
 def freeCoupled(factor, steps):
-	m = elastic()
-	s = Halves(m, 10 * PITCH, 8, 10, velocity=lambda x, y: (1e-4 * m.cS * np.sin(180 * x), 1e-4 * m.cS * np.cos(600 * y)), rotate=0.4, factor=factor, account=True)
+	m = elastic(**DAMPED)
+	s = Halves(m, 10 * PITCH, 8, 10, velocity=lambda x, y: (1e-4 * m.cS * np.sin(180 * x), 1e-4 * m.cS * np.cos(300 * y)), rotate=0.4, factor=factor, account=True)
 	return drift(Trial(s.automata, s.grid, [s.coupler], [(0, m)]), steps)
 
 
@@ -129,7 +132,10 @@ def gridNoise(viscosity=None, **block):
 def cases(quick, seed):
 	steps = 100000 if quick else 1000000
 	found = [StressCase('drift/automata/dtFactor0.4', lambda: freeAutomata(0.4, steps)), StressCase('drift/coupled/factor0.4', lambda: freeCoupled(0.4, steps)),
-	         StressCase('drift/grid/dtFactor0.6', lambda: freeGrid(0.6, steps))]
+	         StressCase('drift/grid/dtFactor0.3', lambda: freeGrid(0.3, steps))]
+	undamped = dict(viscosityLinear=0.)
+	found.append(StressCase('drift/automata/noViscosity', lambda: freeAutomata(0.4, steps, **undamped)))
+	found.append(StressCase('drift/automata/noViscosity/inversePower', lambda: freeAutomata(0.4, steps, 'inversePower', **undamped)))
 	if not quick:
 		found += [StressCase('drift/automata/dtFactor0.9', lambda: freeAutomata(0.9, steps)), StressCase('drift/automata/shockAdiabat', lambda: freeAutomata(0.4, steps, eos='shockAdiabat'))]
 	none = dict(viscosityLinear=0., viscosityQuadratic=0.)
