@@ -12,6 +12,7 @@ A record holds the job (case, solver, n, rule, factor, sleeping, account, thread
     steps, automata, cells, simulated [s], error, against, energyError
     automataNs, cellNs ns per automaton and per cell and step; interfaceNs, phasesPerStep: ns per step
     phases             ns per automaton (cells, nodes: per cell) and step: neighbours, density, pairs, forces, contacts, fracture, integration, cells, nodes, interface, writeBack, rest
+    triad              of the case law: memory bandwidth of one thread then [B/s]; flowing, broken, contacts: shares of the automata
     memory             peak resident memory of the process [MB]; processorShare: processor time over wall time of the run; load: of the machine before
     threads, compiler, isa, processor, commit (of the source tree), build (commit of the libraries), version; ended: the message when an engine ended the run
 """

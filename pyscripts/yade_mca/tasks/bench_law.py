@@ -123,7 +123,7 @@ def law(job):
 	count, found = len(O.bodies), [part(a, b, len(O.bodies)) for a, b in zip(windows, windows[1:])]
 	best = min(found[len(found) // 2:], key=lambda r: r['automataNs'])
 	bonds = len(engine.links()) if engine else O.interactions.countReal()
-	r = dict(best, automata=count, cells=0, cellNs=None, simulated=O.time, built=built, bonds=bonds / count, windowsNs=[f['automataNs'] for f in found], error=None, energyError=None)
+	r = dict(best, automata=count, cells=0, cellNs=None, simulated=O.time, built=built, bonds=bonds / count, windowsNs=[f['automataNs'] for f in found], triad=yadeClass('McaInfo')().triad(1), error=None, energyError=None)
 	if engine:
 		c = engine.counters()
 		r.update(flowing=float((engine.field('plasticStrain') > before).mean()), broken=c['brokenLinks'] / count, contacts=c['contacts'] / count)
