@@ -279,7 +279,7 @@ void Solver::wake()
 	awake.clear();
 	for (size_t b = 0; b < S.blocks.size(); b++)
 		if (S.blocks[b].awake) awake.push_back(int32_t(b));
-	S.packAll(); // neighbours of blocks that sleep read their records too
+	if (topologyChanged) S.packAll(); // neighbours of blocks that sleep read their records, which then stay as they are
 	topologyChanged = false;
 }
 
