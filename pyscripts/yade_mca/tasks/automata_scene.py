@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What the cases of `verify automata` share: a scene with one McaEngine, bars in uniaxial strain, profiles, fronts."""
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,6 +17,27 @@ def material(name, **overrides):
 	if 'viscosity' in overrides:
 		overrides['viscosityLinear'], overrides['viscosityQuadratic'] = overrides.pop('viscosity')
 	return materials.mcaMat(name, **overrides)
+
+
+def steel(**changes):
+	"""Linear elastic steel with Poisson's ratio 0.3 and no viscosity."""
+	options = dict(eos='linear', yieldModel='elastic', viscosity=(0., 0.))
+	options.update(changes)
+	m = material('4340', **options)
+	m.shearModulus = 3 * m.density * m.bulkSoundSpeed**2 * (1 - 0.6) / (2 * 1.3)
+	return m
+
+
+#: plastic flow, scattered fracture and friction at once
+HARD = dict(yieldModel='linearHardening', yieldStress=0.8e9, hardeningModulus=0.5e9, fractureStrain=0.12, spallStrength=2.5e9, strengthSpread=0.1, frictionAngle=0.2)
+
+
+def impactBlocks(speed=400., n=10, **changes):
+	"""A block of n/2 by 0.6 n spacings of 1 mm flies obliquely into another one of n by n, both of steel HARD with `changes`. Returns the ids."""
+	d, m = 1e-3, material('4340', **dict(HARD, **changes))
+	a = addBodies(hexagonal(d, Rectangle((0, 0), (n * d, n * d))), m)
+	b = addBodies(hexagonal(d, Rectangle((-0.82 * n * d, 0.1 * n * d), (0.5 * n * d, 0.6 * n * d)), angle=0.5 * math.pi), m, velocity=(speed, 0.2 * speed), mask=3)
+	return a + b
 
 
 class AutomataRun:
@@ -67,24 +89,30 @@ class AutomataRun:
 
 
 class Bar(AutomataRun):
-	"""Bodies side by side along x in uniaxial strain: the two outer rows or columns at the lower and upper edge keep their y."""
+	"""Bodies side by side along x in uniaxial strain between two lines of mirror symmetry: what lies on them counts half and keeps its y.
+
+	angle: 0 or 90 degrees between the close-packed rows and x; rows: height over the spacing, even.
+	"""
 
 	def __init__(self, spacing, angle, rows, **attributes):
 		super().__init__(**attributes)
-		self.spacing, self.angle, self.height = spacing, angle, rows * spacing
+		self.spacing, self.angle = spacing, angle
+		self.height = rows * spacing * (PITCH if angle == 0 else 1.)
 		self.middle, self.columns = {}, {}
 
 	def body(self, part, mat, start, length, **options):
-		d = self.spacing
-		p = hexagonal(d, Rectangle((start + 0.5 * length, 0), (length, self.height)), angle=self.angle, rim='full')
+		d, half = self.spacing, 0.5 * self.height
+		p = hexagonal(d, Rectangle((start + 0.5 * length, 0), (length, 2 * half + 1e-6 * d)), angle=self.angle, origin=(start + (0.25 if self.angle == 0 else 0.5) * d, 0.), rim='full')
 		p = p.translated((start + 0.5 * d - p.positions[:, 0].min() + (0. if self.angle == 0 else (PITCH - 1) * 0.5 * d), 0.))
 		# corners: an automaton with two links measures no volume and carries no pressure; a plane wave needs none
 		while (few := np.bincount(p.pairs().ravel(), minlength=len(p)) < 3).any():
 			p = p.select(~few)
+		y = abs(p.positions[:, 1])
+		p = replace(p, weight=np.where(y > half - 0.1 * d, 0.5, 1.))
 		ids = self.add(part, p, mat, **options)
-		y = p.positions[:, 1]
-		self.block(ids[(y < y.min() + 1.1 * d) | (y > y.max() - 1.1 * d)], 'y')
-		self.middle[part] = abs(y - 0.5 * (y.min() + y.max())) < 0.25 * self.height
+		# the automata next to a line push along y with fewer links than the mirror image would give them: two rows are held
+		self.block(ids[y > half - 2.1 * d], 'yZ')
+		self.middle[part] = y < 0.5 * half
 		self.end = p.positions[:, 0].max() + 0.5 * d
 		return p
 

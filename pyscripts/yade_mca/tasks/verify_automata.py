@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """`verify automata`: the movable cellular automata against exact solutions, their balances."""
-from . import automata_elastic, automata_impact, automata_shocks
+from . import automata_balance, automata_elastic, automata_impact, automata_roads, automata_shocks
 
-GROUPS = [*automata_elastic.CASES, *automata_shocks.CASES, *automata_impact.CASES]
+GROUPS = [*automata_elastic.CASES, *automata_balance.CASES, *automata_roads.CASES, *automata_shocks.CASES, *automata_impact.CASES]
 
 
 def run(args, report, progress):
