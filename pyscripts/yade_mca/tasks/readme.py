@@ -24,7 +24,7 @@ ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), '..', '..', '..')
 README, RESULTS = os.path.join(ROOT, 'README.md'), os.path.join(ROOT, 'plugin', 'doc', 'results')
 #: result -> (arguments of pyscripts/run, pictures in its --out folder that README shows: pattern -> name)
 JOBS = {
-        'verify-automata': (['verify', 'automata', '--quick'], {}),
+        'verify-automata': (['verify', 'automata'], {}),
         'verify-grid': (['verify', 'grid', '--quick'], {}),
         'verify-interface': (['verify', 'interface', '--quick'], {}),
         'check': (['check'], {}),
@@ -43,9 +43,21 @@ ROWS = [
         ('verify-interface', r'point/', 'interface: point source, what the line adds'),
         ('verify-interface', r'rayleigh/', 'interface: Rayleigh wave across the line'),
         ('verify-interface', r'energy', 'interface: energy'),
-        ('verify-automata', r'speed', 'automata: wave speeds'),
-        ('verify-automata', r'hugoniot|shock|piston', 'automata: shocks'),
-        ('verify-automata', r'energy', 'automata: energy'),
+        ('verify-automata', r'uniform/', 'automata: Hooke and Mises in uniform fields, any orientation'),
+        ('verify-automata', r'phaseSpeed/', 'automata: phase speeds, 6 to 40 spacings per wave'),
+        ('verify-automata', r'rotation/', 'automata: 1000 rigid turns'),
+        ('verify-automata', r'hugoniot/affine/', 'automata: speed and pressure of plastic shocks'),
+        ('verify-automata', r'hugoniot/affineSmooth/', 'automata: the same with more viscosity'),
+        ('verify-automata', r'precursor/', 'automata: elastic precursor and plastic shock'),
+        ('verify-automata', r'impact/[^/]*/(?!smooth)', 'automata: plate impact, plateau'),
+        ('verify-automata', r'impact/[^/]*/smooth', 'automata: the same with more viscosity'),
+        ('verify-automata', r'taylor/', 'automata: Taylor bar, against the grid'),
+        ('verify-automata', r'spall/', 'automata: spall, pull-back of the free surface'),
+        ('verify-automata', r'roads/', "automata: YADE's loop against the engine, 1000 steps"),
+        ('verify-automata', r'[mM]omentum$', 'automata: momenta'),
+        ('verify-automata', r'longRun/energyDrift', 'automata: energy over a million steps'),
+        ('verify-automata', r'bookedEnergy', 'automata: energy, work of all forces'),
+        ('verify-automata', r'energySum$', 'automata: energy, state functions and dissipations'),
         ('check', r'/(?!wall)[^/]*$', 'examples'),
 ]
 
