@@ -109,6 +109,26 @@ def test_gravity(plugin, road):
 	assert (mass * s[:, 3]).sum() == pytest.approx(-9.81 * 1e-6 * mass.sum(), rel=1e-12)
 
 
+def test_otherBodiesHaveTheirOwnIntegrator(plugin):
+	"""NewtonIntegrator moves what its mask selects; the automata, which it must leave alone, run as without it."""
+	from yade import O, NewtonIntegrator, utils
+	digests = []
+	for other in (False, True):
+		O.reset()
+		scene.impact()
+		e = engines(dt=2e-8)
+		if other:
+			O.materials.append(utils.FrictMat())
+			ball = utils.sphere((0, 0.1, 0), 1e-3, material=O.materials[-1])
+			ball.mask = 4
+			ball = O.bodies.append(ball)
+			O.engines = O.engines + [NewtonIntegrator(gravity=(0, -9.81, 0), damping=0, mask=4)]
+		for _ in range(5):
+			O.run(30, True)
+		digests.append([e.field(k).tobytes() for k in scene.FIELDS])
+	assert digests[0] == digests[1] and O.bodies[ball].state.vel[1] == pytest.approx(-9.81 * 150 * 2e-8, rel=1e-9)
+
+
 def test_forceThatIsNotFiniteNamesTheBodyAndNothingMoves(plugin, tmp_path):
 	from yade import O
 	ids = scene.block(6, 6)
