@@ -143,11 +143,13 @@ void Solver::computeForces()
 		sums.friction += cw.friction, sums.coupling += cw.coupling, sums.viscous += cw.viscous;
 	}
 	// 2.8: all blocks, the sleeping ones with their state of rest
-	double limit = 1e300;
+	double limit = 1e300, pressed = 0; // stiffest of what meets something else [Pa]: its pressure moves lighter neighbours, too, from one side
+	for (size_t b = 0; b < S.blocks.size(); b++)
+		if (S.blocks[b].mixed || S.blocks[b].contact) pressed = std::max(pressed, results[b].stiffest * S.materialOf(S.blocks[b]).eos.rho0);
 	for (size_t b = 0; b < S.blocks.size(); b++) {
 		const Block&    B  = S.blocks[b];
 		const Material& m  = S.materialOf(B);
-		const double    cP = std::sqrt(results[b].stiffest), d = S.species[B.species].d;
+		const double    cP = std::sqrt(B.mixed || B.contact ? 0.5 * (results[b].stiffest + std::max(results[b].stiffest, pressed / m.eos.rho0)) : results[b].stiffest), d = S.species[B.species].d;
 		const double    dv = lastMove > 0 ? results[b].closing * d / lastMove : 0.;
 		// what turns an automaton against its neighbours grows with J: shear stresses are those of the present volume
 		limit              = std::min(limit, stableStep(d, cP, m.cS() * std::sqrt(results[b].widest), m.viscosity.active() ? m.viscosity.linear + m.viscosity.quadratic * dv / cP : 0.));

@@ -4,6 +4,7 @@
 #pragma once
 #include "../kernels/material.hpp"
 #include "../kernels/pair.hpp"
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -94,12 +95,12 @@ struct Store {
 		const double a = materials[species[mine].material].G, b = materials[species[speciesOf(j)].material].G;
 		return a > 0 && b > 0 ? 2. / (q / a + (1. - q) / b) : 0.;
 	}
-	/// Mean of both sides' viscous coefficients [Pa s/m], [Pa s2/m2].
+	/// The smaller of both sides' viscous coefficients [Pa s/m], [Pa s2/m2]: a heavy neighbour must not overdamp a light automaton.
 	void pairViscosity(int32_t mine, size_t j, double& linear, double& quadratic) const
 	{
 		const Material &a = materials[species[mine].material], &b = materials[species[speciesOf(j)].material];
-		linear    = 0.5 * (a.viscosity.linear * a.eos.rho0 * a.eos.c0 + b.viscosity.linear * b.eos.rho0 * b.eos.c0);
-		quadratic = 0.5 * (a.viscosity.quadratic * a.eos.rho0 + b.viscosity.quadratic * b.eos.rho0);
+		linear    = std::min(a.viscosity.linear * a.eos.rho0 * a.eos.c0, b.viscosity.linear * b.eos.rho0 * b.eos.c0);
+		quadratic = std::min(a.viscosity.quadratic * a.eos.rho0, b.viscosity.quadratic * b.eos.rho0);
 	}
 	const Material& materialOf(const Block& b) const { return materials[species[b.species].material]; }
 

@@ -173,7 +173,21 @@ void McaDensity::overlapError(const Row& r, const Side& s, Real ratio) const
 
 void McaDensity::checkResults()
 {
-	Real limit = std::numeric_limits<Real>::infinity(), speed2 = 0, dMin = limit;
+	Real limit = std::numeric_limits<Real>::infinity(), speed2 = 0, dMin = limit, pressed = 0;
+	// as in Solver::computeForces: the pressure of what meets something else moves lighter neighbours, too
+	const auto meets = [&](const Row& r) {
+		bool other = r.firstContact < r.lastContact;
+		for (const Side& s : r.link)
+			other |= s.p && rows[size_t(s.other)].material != r.material;
+		return other;
+	};
+	for (auto& r : rows)
+		if (meets(r)) pressed = std::max(pressed, r.stiff * r.material->eos.rho0);
+	for (auto& r : rows) {
+		const Real  cP = std::sqrt(meets(r) ? 0.5 * (r.stiff + std::max(r.stiff, pressed / r.material->eos.rho0)) : r.stiff);
+		const auto& q  = r.material->viscosity;
+		r.limit        = mca::stableStep(r.d, cP, r.material->cS() * std::sqrt(std::max(r.m->volumeRatio, Real(1))), q.active() ? q.linear + q.quadratic * r.closing / cP : 0.);
+	}
 	for (auto& r : rows) {
 		if (r.bad) {
 			std::ostringstream o;

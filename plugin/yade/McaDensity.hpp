@@ -68,7 +68,7 @@ public:
 		Side                 link[6];
 		int                  firstContact = 0, lastContact = 0; ///< in contacts, ascending ids
 		// of this step
-		Real   limit = 0, nearestLink = 1, nearestContact = 1;
+		Real   limit = 0, stiff = 0, closing = 0, nearestLink = 1, nearestContact = 1;
 		bool   clampedNow = false, bad = false;
 		Real   plastic = 0, coupling = 0, friction = 0, heated = 0;
 	};

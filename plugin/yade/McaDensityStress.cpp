@@ -99,9 +99,7 @@ void McaDensity::volume(Row& r, bool withContacts)
 		}
 	} else
 		l.share = pressureShare(l.rule, P, Jn, l.cell * l.invN);
-	const Real cP = std::sqrt(stiff), dv = lastMove > 0 ? std::max(-l.dTheta, Real(0)) * r.d / lastMove : 0.;
-	const auto& q = r.material->viscosity;
-	r.limit       = mca::stableStep(r.d, cP, r.material->cS() * std::sqrt(std::max(Jn, Real(1))), q.active() ? q.linear + q.quadratic * dv / cP : 0.);
+	r.stiff = stiff, r.closing = lastMove > 0 ? std::max(-l.dTheta, Real(0)) * r.d / lastMove : 0.;
 }
 
 // Trial stresses (7)-(9) of this side of all pairs, radial return (10)-(11), fracture criteria, friction.

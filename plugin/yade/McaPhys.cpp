@@ -68,8 +68,8 @@ void Ip2_McaMat_McaMat_McaPhys::go(const shared_ptr<Material>& m1, const shared_
 	p->share         = da / (da + db);
 	p->twoG          = a.shearModulus > 0 && b.shearModulus > 0 ? 2. / (p->share / a.shearModulus + (1. - p->share) / b.shearModulus) : 0.;
 	p->friction      = std::min(std::tan(a.frictionAngle), std::tan(b.frictionAngle));
-	p->viscLinear    = 0.5 * (a.viscosityLinear * a.density * a.bulkSoundSpeed + b.viscosityLinear * b.density * b.bulkSoundSpeed);
-	p->viscQuadratic = 0.5 * (a.viscosityQuadratic * a.density + b.viscosityQuadratic * b.density);
+	p->viscLinear    = std::min(a.viscosityLinear * a.density * a.bulkSoundSpeed, b.viscosityLinear * b.density * b.bulkSoundSpeed);
+	p->viscQuadratic = std::min(a.viscosityQuadratic * a.density, b.viscosityQuadratic * b.density);
 	const Vector2r x = between(A, B);
 	if (McaPhys::mayTouch(A, *lawState(A), B, *lawState(B))) p->startContact(x.norm());
 }

@@ -233,6 +233,26 @@ TEST(AutomataStep, IndependentEnergyClosesOnWeightedRimsAndThroughFracture)
 	}
 }
 
+TEST(AutomataStep, VeryUnlikeMaterialsAreStable)
+{
+	// linked or in contact with what is a hundred times as heavy and stiff: neither its viscosity nor its pressure may make the light side unstable
+	for (bool linked : { true, false })
+		for (double viscosity : { 0., 0.25 }) {
+			Material heavy = steel(), light = steel();
+			light.eos.rho0 *= 0.01, light.G *= 0.01;
+			heavy.viscosity = light.viscosity = { viscosity, 5 * viscosity };
+			auto list = packing(d, 8, 10, light);
+			for (auto& q : list) q.vx = 10;
+			append(list, packing(d, 8, 10, heavy, { 8 * d, 0, 0 }, 100, 1, linked ? 1 : 2));
+			Solver s;
+			s.build(list, { light, heavy }, {});
+			const double start = s.account().kinetic;
+			double       dt = 0, most = 0;
+			for (int k = 0; k < 100; k++) dt = run(s, 10, 0.9, dt), most = std::max(most, s.account().kinetic);
+			EXPECT_LT(most, 1.05 * start) << linked << ' ' << viscosity;
+		}
+}
+
 TEST(AutomataStep, LargestStableStepFallsInTension)
 {
 	// the lattice stretched in one move: shear stresses are those of the present volume, so the rotation mode rises as sqrt(J)

@@ -66,4 +66,6 @@ def run(args, report, progress):
 	print(text)
 	print('\nheld %d, refused %d, failed %d' % (count['held'], count['refused'], count['failed']))
 	if args.out:
+		from .stress_doc import page
 		writeAtomically(os.path.join(args.out, 'stress.txt'), text + '\n')
+		writeAtomically(os.path.join(args.out, 'stress.inc'), page(report.asDict()))

@@ -17,6 +17,7 @@ from .stress_judge import StressCase
 from .stress_scene import D, PITCH, Trial, advance, automataTrial, elastic, gridTrial, jittered, material
 
 DRIFT = 1e-4  #: largest change of the mean energy over a long run [-]
+SINGLE = 0.1  #: bound on single samples of the energy sum in those runs: leapfrog's own error of the waves near the limit of the step
 NOISE = 0.01  #: of the lattices behind whose shocks the shortest waves are measured: without it symmetry would hide them
 #: linear viscosity of the long runs, a hundredth of the default: without any, free surfaces of the affine rule feed energy into waves, see plugin/doc/stability.rst
 DAMPED = dict(viscosityLinear=0.0025)
@@ -131,13 +132,13 @@ def gridNoise(viscosity=None, **block):
 
 def cases(quick, seed):
 	steps = 100000 if quick else 1000000
-	found = [StressCase('drift/automata/dtFactor0.4', lambda: freeAutomata(0.4, steps)), StressCase('drift/coupled/factor0.4', lambda: freeCoupled(0.4, steps)),
-	         StressCase('drift/grid/dtFactor0.3', lambda: freeGrid(0.3, steps))]
+	found = [StressCase('drift/automata/dtFactor0.4', lambda: freeAutomata(0.4, steps), energy=SINGLE), StressCase('drift/coupled/factor0.4', lambda: freeCoupled(0.4, steps), energy=SINGLE),
+	         StressCase('drift/grid/dtFactor0.3', lambda: freeGrid(0.3, steps), energy=SINGLE)]
 	undamped = dict(viscosityLinear=0.)
-	found.append(StressCase('drift/automata/noViscosity', lambda: freeAutomata(0.4, steps, **undamped)))
-	found.append(StressCase('drift/automata/noViscosity/inversePower', lambda: freeAutomata(0.4, steps, 'inversePower', **undamped)))
+	found.append(StressCase('drift/automata/noViscosity', lambda: freeAutomata(0.4, steps, **undamped), energy=SINGLE))
+	found.append(StressCase('drift/automata/noViscosity/inversePower', lambda: freeAutomata(0.4, steps, 'inversePower', **undamped), energy=SINGLE))
 	if not quick:
-		found += [StressCase('drift/automata/dtFactor0.9', lambda: freeAutomata(0.9, steps)), StressCase('drift/automata/shockAdiabat', lambda: freeAutomata(0.4, steps, eos='shockAdiabat'))]
+		found += [StressCase('drift/automata/dtFactor0.9', lambda: freeAutomata(0.9, steps), energy=SINGLE), StressCase('drift/automata/shockAdiabat', lambda: freeAutomata(0.4, steps, eos='shockAdiabat'), energy=SINGLE)]
 	none = dict(viscosityLinear=0., viscosityQuadratic=0.)
 	for name, angle in (('along', 0.), ('across', 0.5 * math.pi)):
 		found.append(StressCase('evenOdd/automata/%s' % name, lambda a=angle: automataNoise(a)))

@@ -8,10 +8,11 @@ import numpy as np
 
 from .. import materials, packings
 from ..outlines import Polygon
-from .stress_judge import StressCase, energyBound
+from .stress_judge import StressCase
 from .stress_scene import D, automataTrial, jittered, material, transit
 
 COUNT = 50
+BOUND = 0.05  #: on the energy sum: steps up to 0.9 of the limit, speeds up to 6 km/s
 METALS = ('WHA_JC', '4340', 'OFHC_Cu', 'Al2024_T4')
 SHAPES = {
         'rectangle': ((0, 0), (1, 0), (1, 1), (0, 1)),
@@ -79,4 +80,4 @@ def run(seed, k):
 
 
 def cases(quick, seed):
-	return [StressCase('random/%d' % k, lambda k=k: run(seed, k), 'either', energyBound(describe(seed, k)['dtFactor'])) for k in range(12 if quick else COUNT)]
+	return [StressCase('random/%d' % k, lambda k=k: run(seed, k), 'either', BOUND) for k in range(12 if quick else COUNT)]
