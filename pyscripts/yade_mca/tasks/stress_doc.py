@@ -77,7 +77,7 @@ def page(data):
 	"""The tables of one result, text."""
 	out = data['stress']['outcomes']
 	parts = [summary(out), failures(out), values(out, 'limit', 'Measured over predicted limit of the time step', 'state'), values(out, 'drift', 'Change of the mean energy', 'body'),
-	         values(out, 'evenOdd', 'Shortest wave over the mean pressure', 'run'), refusals(out), madeBy(data, 'stress')]
+	         values(out, 'evenOdd', 'Shortest wave over the mean pressure', 'run'), refusals(out), madeBy(data, 'stress --quick' if data['stress']['quick'] else 'stress')]
 	return '\n'.join(p for p in parts if p)
 
 
