@@ -94,7 +94,7 @@ def made(case, solver, n, stepping, **options):
 	extra = {k: options.pop(k) for k in ('error', 'result', 'signal', 'automataNs') if k in options}
 	j = bench_plan.job(case, solver, n, **options)
 	phases = dict(density=10., pairs=20., cells=5.)
-	return dict(j, name=bench_plan.name(j), stepping=stepping, built=.1, wall=2., steps=10, automata=n * n, cells=0, simulated=1e-6, energyError=1e-3, phases=phases, phasesPerStep=phases, memory=100., load=1.,
+	return dict(j, name=bench_plan.name(j), stepping=stepping, timers=stepping, built=.1, wall=2., steps=10, automata=n * n, cells=0, simulated=1e-6, energyError=1e-3, phases=phases, phasesPerStep=phases, memory=100., load=1.,
 	            compiler='GCC', isa='x86-64', processor='p', commit='c', version='v', cellNs=None, **{'error': None, 'automataNs': 10., **extra})
 
 
@@ -131,6 +131,10 @@ def test_ratios():
 	slow = Report('t')
 	bench_results.add(slow, [dict(r, automataNs=500.) if r['solver'] == 'CpmMat' else r for r in records])
 	assert [c.name for c in slow.failed] == ['law/N100/plastic/1threads/CpmMatOverMcaEngine']
+	for load, passed in ((1., False), (5., True)):  # two threads are held to the target on an idle machine only
+		r = Report('t')
+		bench_results.add(r, [dict(x, load=load, timers=.009) if x['threads'] == 2 else x for x in records])
+		assert next(c for c in r.cases if c.name == 'law/McaEngine/N100/2threads').passed is passed
 
 
 def test_picturesAndTables(tmp_path):

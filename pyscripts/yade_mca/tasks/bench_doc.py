@@ -25,10 +25,12 @@ def law(records):
 	rows = {}
 	for n, kind, threads, road, ns, ratio, load in results.peers(records):
 		rows.setdefault((road, kind, n), {})[threads] = (ns, ratio)
+	ratios = {name: ratio for name, ratio, _ in results.speedUps(records)}
+	speed = {(r['solver'], r['kind'], r['n']): ratios.get(r['name']) for r in records if r['case'] == 'law' and r['threads'] == 1}
 	lines = []
 	for (road, kind, n), of in sorted(rows.items(), key=lambda x: (x[0][2], list(KINDS).index(x[0][1]), x[1].get(1, (0, ))[0])):
 		one, two = of.get(1), of.get(2)
-		lines.append((road, KINDS[kind] if road in ('McaEngine', 'Law2') else 'its own', '%d' % n, number(one and one[0], 0), number(two and two[0], 0), number(one[0] / two[0], 2) if one and two else '',
+		lines.append((road, KINDS[kind] if road in ('McaEngine', 'Law2') else 'its own', '%d' % n, number(one and one[0], 0), number(two and two[0], 0), number(speed.get((road, kind, n)), 2),
 		              number(one and one[1], 1), number(two and two[1], 1)))
 	head = ('law', 'material', 'automata', 'ns, 1 thread', 'ns, 2 threads', '1 over 2 threads', 'over McaEngine, 1 thread', '2 threads')
 	return listTable('Nanoseconds per automaton and step', head, lines) + madeBy([r for r in records if r['case'] == 'law'])
