@@ -77,6 +77,11 @@ def elastic(name, packing, velocities, material, factor):
 	return c
 
 
+def windows(count):
+	"""Windows of a run: half as many where one takes seconds."""
+	return WINDOWS // (2 if count > 5e5 else 1)
+
+
 def packing(count):
 	side = math.sqrt(count * 0.5 * math.sqrt(3)) * D
 	return packings.hexagonal(D, packings.Rectangle((0, 0), (side, side)))
@@ -99,7 +104,7 @@ def scene(road, count, kind):
 		bonded(road, p.positions, v)
 		return None
 	strength = dict(yieldModel='elastic') if kind == 'elastic' else dict(yieldModel='linearHardening', yieldStress=0.1e9, hardeningModulus=0.5e9)
-	if kind == 'fracture': strength.update(fractureStrain=0.02, strengthSpread=0.1)
+	if kind == 'fracture': strength.update(fractureStrain=0.02 * windows(count) / WINDOWS, strengthSpread=0.1)  # a few reach it
 	packings.addBodies(p, materials.mcaMat('4340', **strength), velocity=v)
 	if road == 'Law2':
 		ownLoop()
@@ -113,14 +118,14 @@ def law(job):
 	"""The best of the later windows of one run, without the write-back at its end; `flowing`: share of the automata whose plastic strain has grown in it, `broken`: broken links per automaton."""
 	road, begin = job['solver'], time.perf_counter()
 	O, engine = _yade.scene(), scene(road, job['n'], job['kind'])
-	meter, built, windows = Meter(engine), time.perf_counter() - begin, []
+	meter, built, seen = Meter(engine), time.perf_counter() - begin, []
 	meter.steps(WARM if engine else WARM // 3)  # all bonds are made, first yield
 	before = engine.field('plasticStrain') if engine else None
-	__main__.benchWindow = lambda: windows.append((O.iter, meter.nanoseconds(), time.process_time(), time.perf_counter()))
+	__main__.benchWindow = lambda: seen.append((O.iter, meter.nanoseconds(), time.process_time(), time.perf_counter()))
 	steps = WINDOW if engine else WINDOW_OF_PEERS
 	O.engines = [*O.engines, yadeClass('PyRunner')(command='benchWindow()', iterPeriod=steps, firstIterRun=O.iter + 1)]
-	meter.steps((WINDOWS // (1 if engine else 2) // (4 if job.get('short') else 1)) * steps + 3)
-	count, found = len(O.bodies), [part(a, b, len(O.bodies)) for a, b in zip(windows, windows[1:])]
+	meter.steps((windows(job['n']) // (1 if engine else 2) // (4 if job.get('short') else 1)) * steps + 3)
+	count, found = len(O.bodies), [part(a, b, len(O.bodies)) for a, b in zip(seen, seen[1:])]
 	best = min(found[len(found) // 2:], key=lambda r: r['automataNs'])
 	bonds = len(engine.links()) if engine else O.interactions.countReal()
 	r = dict(best, automata=count, cells=0, cellNs=None, simulated=O.time, built=built, bonds=bonds / count, windowsNs=[f['automataNs'] for f in found], triad=yadeClass('McaInfo')().triad(1), error=None, energyError=None)

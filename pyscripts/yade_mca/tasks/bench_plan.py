@@ -82,10 +82,11 @@ def bodies():
 	jobs = series('taylorBar', 'automata', (8, 12, 18, 27, 40, 60)) + rulesAndSteps('taylorBar', 'automata', 18, (0.1, 0.2, 0.7, 1.))
 	jobs += [job('taylorBar', 'automata', 27, **o) for o in (dict(threads=2), dict(sleeping=False), dict(account=True))]
 	for w in WIDTHS:
-		jobs += series('plateWave', 'automata', (12, 24, 48, 96), width=w) + series('plateWave', 'coupled', (12, 24, 48), width=w)
-	jobs += [job('plateWave', s, 48, width=400, **o) for s in ('automata', 'coupled') for o in (dict(threads=2), dict(account=True))]
+		finest = (96, ) if w == 120 else ()
+		jobs += series('plateWave', 'automata', (12, 24, 48, *finest), width=w) + series('plateWave', 'coupled', (12, 24, *((48, ) if finest else ())), width=w)
+	jobs += [job('plateWave', s, 24, width=400, **o) for s in ('automata', 'coupled') for o in (dict(threads=2), dict(account=True))]
 	jobs += series('penetration', 'coupled', (12, 25, 50, 100)) + series('penetration', 'automata', (12, 25, 50)) + rulesAndSteps('penetration', 'coupled', 25, (0.1, 0.2, 0.6, 0.8, 1.))
-	jobs += [job('penetration', 'coupled', 25, **o) for o in (dict(threads=2), dict(sleeping=False), dict(account=False))] + [job('penetration', 'coupled', n, threads=2) for n in (50, 100)]
+	jobs += [job('penetration', 'coupled', 25, **o) for o in (dict(threads=2), dict(sleeping=False), dict(account=False))] + [job('penetration', 'coupled', 50, threads=2)]
 	return jobs + [job('penetration', s, n, width=w) for w in WIDTHS[1:] for s in ('automata', 'coupled') for n in (25, 50)]
 
 
