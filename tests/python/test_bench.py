@@ -159,6 +159,13 @@ def test_aFolderKeepsTheCasesThatAreNotRunAgain(tmp_path, monkeypatch):
 	assert bench.line(dict(name='a', ended='because')).endswith('because')
 
 
+def test_theFasterOfTwoRunsWithTheSameLibraries():
+	slow, fast = made('law', 'Law2', 9, 2., error=1.), made('law', 'Law2', 9, 1., error=1.)
+	other = made('law', 'Law2', 10, 3.)
+	assert bench.fastest([fast, other], [slow]) == [fast, other] and bench.fastest([slow], [fast, other]) == [fast, other]
+	assert bench.fastest([dict(fast, build='older')], [dict(slow, build='new')]) == [dict(slow, build='new')]
+
+
 def test_programsThatAreNotBuiltAreSaidSo(tmp_path):
 	assert bench_google.run(True, tmp_path) == ({}, ['bench_grid is not built (build target bench_grid)', 'bench_automata is not built (build target bench_automata)'])
 	(tmp_path / 'bench_grid').write_text('#!/bin/sh\necho \'{"benchmarks": [{"name": "a", "time_unit": "us", "real_time": 2.0, "run_type": "iteration", "ns_per_cell": 3.0}]}\'\n')

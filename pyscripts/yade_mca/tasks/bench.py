@@ -30,6 +30,7 @@ KERNELS = 'kernels'
 def addArguments(parser):
 	parser.add_argument('--quick', action='store_true', help='fewer and coarser runs, two to three minutes')
 	parser.add_argument('--only', metavar='CASE', action='append', help='of %s; may be given several times' % ', '.join((*bench_plan.CASES, KERNELS)))
+	parser.add_argument('--fastest', action='store_true', help='keep the runs that are in DIR/bench.json and, of runs made again with the same libraries, the faster one: for machines that others use')
 	parser.add_argument('--doc', metavar='DIR', help='only make the tables of the documentation from DIR/bench.json')
 
 
@@ -52,13 +53,24 @@ def line(r):
 	        r['name'], r['stepping'], r['automata'], r['cells'], r['steps'], show(r.get('error'), '%.2g'), show(r['automataNs'], '%.0f'), show(r['cellNs'], '%.0f'), r['memory'])
 
 
-def kept(path, only):
+def kept(path, only, everything=False):
 	"""(records, kernels) of an older result that this run does not renew."""
-	if not only or not os.path.exists(path):
+	if not os.path.exists(path) or not (only or everything):
 		return [], {}
 	with open(path) as f:
 		old = json.load(f)
+	if everything:
+		return old['records'], old.get('kernels', {})
 	return [r for r in old.get('records', ()) if r['case'] not in only], {} if KERNELS in only else old.get('kernels', {})
+
+
+def fastest(old, new):
+	"""All records of both; of two with the same name and libraries the faster one, else the new one. Errors do not depend on which it is."""
+	best = {r['name']: r for r in old}
+	for r in new:
+		b = best.get(r['name'])
+		if not (b and r.get('stepping') and b.get('stepping') and b.get('build') == r.get('build') and b['stepping'] / b['steps'] <= r['stepping'] / r['steps']): best[r['name']] = r
+	return list(best.values())
 
 
 def run(args, report, progress):
@@ -68,7 +80,7 @@ def run(args, report, progress):
 		return
 	jobs = bench_plan.plan(args.quick, args.only, environment.cores())
 	path = args.out and os.path.join(args.out, 'bench.json')
-	old, kernels = kept(path, args.only) if path else ([], {})
+	old, kernels = kept(path, args.only, args.fastest) if path else ([], {})
 	records = []
 	with progress(len(jobs), 'bench', 'run') as bar:
 		for j in jobs:
@@ -88,9 +100,9 @@ def run(args, report, progress):
 	for text in remarks:
 		print('bench:', text)
 	bench_results.add(report, records)
-	report.extra.update(command=command(args), records=old + records, kernels=kernels, remarks=remarks)
+	report.extra.update(command=command(args), records=fastest(old, records), kernels=kernels, remarks=remarks)
 	if args.out:
-		made = written(args, old + records, kernels, remarks)
+		made = written(args, fastest(old, records), kernels, remarks)
 		print('%s are in %s' % (', '.join(made), os.path.abspath(args.out)))
 
 

@@ -4,6 +4,7 @@
 #: case -> share of the largest stable time step where nothing else is said
 FACTORS = dict(elasticWave=0.4, plasticShock=0.4, taylorBar=0.4, plateWave=0.4, penetration=0.3, law=0.1)
 GRID_FACTOR = 0.6
+UNTIL = 42.  #: end of penetration [us]
 RULES = ('inversePower', 'meanDistance')
 WIDTHS = (120, 200, 400)  #: of plates [mm]
 CASES = tuple(FACTORS)
@@ -19,7 +20,7 @@ def job(case, solver, n, **options):
 	"""A job with its defaults; `mayEnd`: an error of the engine is a result, not a failure."""
 	j = dict(case=case, solver=solver, n=n, rule='affine', factor=GRID_FACTOR if solver == 'grid' else FACTORS[case], sleeping=True, account=case == 'penetration', threads=1, mayEnd=False)
 	if case == 'plateWave': j['width'] = 120
-	if case == 'penetration': j.update(width=120, until=42.)
+	if case == 'penetration': j.update(width=120, until=UNTIL)
 	if case == 'law': j.update(kind='plastic', sleeping=False, account=False)
 	if not set(options) <= {*j, 'short'}:
 		raise ValueError('unknown options %s' % sorted(set(options) - set(j)))
@@ -39,7 +40,7 @@ def variants(j):
 
 
 def name(j):
-	width = ['w%d' % j['width']] if 'width' in j else []
+	width = (['w%d' % j['width']] if 'width' in j else []) + ['%gus' % j.get('until', UNTIL)] * (j.get('until', UNTIL) != UNTIL)
 	return '/'.join([j['case'], j['solver'], *width, 'N%d' % j['n'], *variants(j)])
 
 
@@ -63,8 +64,8 @@ def quick():
 		jobs += series('plateWave', 'automata', (12, 24, 48), width=w) + series('plateWave', 'coupled', (12, 24), width=w)
 	jobs += series('penetration', 'coupled', (12, 25), until=20.) + series('penetration', 'automata', (12, 25), until=20.) + [job('penetration', 'coupled', 25, until=20., threads=2)]
 	jobs += [job('penetration', 'coupled', 12, until=20., sleeping=False), job('penetration', 'coupled', 12, until=20., rule='inversePower')]
-	roads = [job('law', r, 10000, short=True) for r in ('McaEngine', 'Law2', 'CpmMat', 'CohFrictMat')]
-	return jobs + roads + [job('law', 'McaEngine', 10000, short=True, **o) for o in (dict(threads=2), dict(kind='elastic'), dict(kind='fracture'), dict(kind='random'))]
+	roads = [job('law', 'McaEngine', 10000)] + [job('law', r, 10000, short=True) for r in ('Law2', 'CpmMat', 'CohFrictMat')]
+	return jobs + roads + [job('law', 'McaEngine', 10000, **o) for o in (dict(threads=2), dict(kind='elastic'), dict(kind='fracture'), dict(kind='random'))]
 
 
 def waves():
