@@ -18,8 +18,7 @@ Account Solver::account() const
 			const size_t i = b * blockSize + l;
 			v += m.eos.mieGrueneisen ? S.cell[i] * m.eos.rho0 * S.heat[i] : stateEnergy(i, S.J[i]);
 			if (S.jOff[i] > 0. && S.blocks[b].contact) v += stateEnergy(i, 1. / (1. + scratch.sum[i] / nLinks)); // affine rule: contacts have a volume of their own
-			// the pairs stand for the volume Omega0/(6 invN), which on weighted rims is not the cell
-			if (m.G > 0) q += Lattice<2>::cell(S.diameter[i]) / (nLinks * S.invN[i]) * S.J[i] * sqr(equivalentStress(i)) / (6. * m.G);
+			q += deviatoricEnergy(i);
 			if (S.flags[i] & tiedBit) { // its mass is on the grid; a free spin is its own
 				if (S.ar[i] > 0) k += 0.5 * S.inertia[i] * sqr(S.omega[i]), a += S.inertia[i] * S.omega[i];
 				continue;
@@ -49,6 +48,14 @@ double Solver::equivalentStress(size_t i) const
 			sq += w * (sqr(S.s[linkSlot(i, s)]) + sqr(S.tau[linkSlot(i, s)])) / sqr(S.J[i]);
 		}
 	return std::sqrt(equivalentStress2<2>(sq * S.invN[i], S.szz[i]));
+}
+
+double Solver::deviatoricEnergy(size_t i) const
+{
+	const Store& S = store;
+	const double G = S.materials[S.species[S.speciesOf(i)].material].G;
+	// the pairs stand for the volume Omega0/(6 invN), which on weighted rims is not the cell
+	return G > 0 ? Lattice<2>::cell(S.diameter[i]) / (nLinks * S.invN[i]) * S.J[i] * sqr(equivalentStress(i)) / (6. * G) : 0.;
 }
 
 size_t Solver::stiffestAutomaton() const

@@ -278,6 +278,10 @@ void Solver::build(const std::vector<Automaton>& automata, const std::vector<Mat
 	counters        = Counters();
 	sums            = Account();
 	store.materials = materials;
+	flows           = false;
+	for (auto& m : materials)
+		flows |= m.yield.kind != YieldKind::elastic && o.volumeRule == VolumeRule::affine;
+	filterTime = 0;
 	tied.clear(), tiedVx.clear(), tiedVy.clear(), tiedW.clear(), exposed.clear(), contactAdjacent.clear();
 	time = lastDt = lastMove = dtLimit = contactSpeed2 = 0, lastSort = 0;
 	unsettled.clear();

@@ -17,11 +17,7 @@ namespace {
 			to[C.rowOwner[r]] = sum;
 		}
 	}
-	/// This side pushes. Two automata that have slid into each other do not touch until they have parted: near zero distance a pair force has
-	/// no meaning, and the volume they share is held by their other neighbours.
-	/// A rest distance that grows with the pair is its distance but for rounding: no touch.
-	bool   active(const Contacts& C, size_t c, double r2) { return r2 < touchShare * sqr(C.rest[c]) && C.rest[c] >= collapsed * C.d[c]; }
-	bool   touching(const Contacts& C, size_t c, double r2) { return active(C, c, r2) || active(C, C.reverse[c], r2); }
+	bool touching(const Contacts& C, size_t c, double r2) { return pushes(C, c, r2) || pushes(C, C.reverse[c], r2); }
 	/// (6) of both sides, each with its own rest distance: push over the vector from owner to other [N/m2]
 	double push(const Store& S, const Contacts& C, size_t c, VolumeRule rule, double r2)
 	{
@@ -29,7 +25,7 @@ namespace {
 		const double inv = 1. / r2, a = C.rest[c], b = C.rest[r];
 		const double sa = rule == VolumeRule::meanDistance ? pressureShape<VolumeRule::meanDistance, 2>(a, inv) : pressureShape<VolumeRule::inversePower, 2>(a, inv);
 		const double sb = rule == VolumeRule::meanDistance ? pressureShape<VolumeRule::meanDistance, 2>(b, inv) : pressureShape<VolumeRule::inversePower, 2>(b, inv);
-		return (active(C, c, r2) ? S.h[C.owner[c]] * sa : 0.) + (active(C, r, r2) ? S.h[C.other[c]] * sb : 0.);
+		return (pushes(C, c, r2) ? S.h[C.owner[c]] * sa : 0.) + (pushes(C, r, r2) ? S.h[C.other[c]] * sb : 0.);
 	}
 	double distance2(const Store& S, const Contacts& C, size_t c, double& dx, double& dy)
 	{
@@ -46,7 +42,7 @@ double contactDensity(const Store& S, Contacts& C, VolumeRule rule, ContactScrat
 		double       dx, dy;
 		const double d = C.d[c], rest = C.rest[c], r2 = distance2(S, C, c, dx, dy);
 		const double term = rule == VolumeRule::meanDistance ? volumeTerm<VolumeRule::meanDistance, 2>(rest, r2) : volumeTerm<VolumeRule::inversePower, 2>(rest, r2);
-		const bool   on   = active(C, c, r2);
+		const bool   on   = pushes(C, c, r2);
 		C.a[c]            = on ? term : 0.;
 		// a pair that had come into contact already closer than d gets its rest distance back as it parts; no energy is in it then
 		C.rest[c] = r2 < rest * rest ? rest : min(std::sqrt(r2), d);
@@ -99,7 +95,7 @@ void contactFriction(const Store& S, Contacts& C, VolumeRule rule, const Contact
 		const double  d = C.d[c], r2 = distance2(S, C, c, dx, dy);
 		// normal pair force S s/r - push <= 0: each side keeps within it, so their mean does
 		const double sMax = push(S, C, c, rule, r2) * r2 / (Lattice<2>::width(d) * d);
-		const double s0 = C.s[c] * in.scale[i], t0 = C.tau[c] * in.scale[i];
+		const double st = C.s[c] * S.J[i], tt = C.tau[c] * S.J[i], s0 = C.s[c] * in.scale[i], t0 = C.tau[c] * in.scale[i];
 		const double s = min(s0, sMax), tMax = C.friction[c] * (sMax - s), t = min(max(t0, -tMax), tMax);
 		C.s[c]   = s;
 		C.tau[c] = t;
@@ -109,7 +105,8 @@ void contactFriction(const Store& S, Contacts& C, VolumeRule rule, const Contact
 		const double area = 0.5 * Lattice<2>::width(d) * d, perG = C.twoG[c] > 0. ? 0.5 * area / C.twoG[c] / S.J[i] : 0.;
 		const double so = C.b[c] * S.J[i], to = C.c[c] * S.J[i], held = perG * fma(so, so, to * to);
 		const bool   on = touching(C, c, r2);
-		C.a[c]          = on ? perG * ((so + s) * (s0 - s) + (to + t) * (t0 - t)) : held;
+		// (so + s)(st - s) in all; the plastic work has (so + s0)(st - s0) of it
+		C.a[c] = on ? perG * ((so + s) * (s0 - s) + (to + t) * (t0 - t) + (s - s0) * (st - s0) + (t - t0) * (tt - t0)) : held;
 		// as for links: pair work that goes into volume change
 		C.b[c] = on ? area * 0.5 * (so + s) * (S.dTheta[i] + S.dTheta[C.other[c]]) * (1. / 6.) - S.dTheta[i] * held : 0.;
 	}
@@ -118,11 +115,11 @@ void contactFriction(const Store& S, Contacts& C, VolumeRule rule, const Contact
 			work->friction += C.a[c], work->coupling += C.b[c];
 }
 
-void contactForces(const Store& S, Contacts& C, VolumeRule rule, double dt, ContactScratch& out, ContactWork* work)
+void contactForces(const Store& S, Contacts& C, VolumeRule rule, ContactScratch& out, bool account)
 {
 	const long          n = long(C.size());
 	std::vector<double> t;
-	t.resize(work ? n * 5 : n);
+	t.resize(account ? n * 5 : n);
 #pragma omp parallel for schedule(static) if (n >= parallelFrom)
 	for (long c = 0; c < n; c++) {
 		const int32_t i = C.owner[c], j = C.other[c], r = C.reverse[c];
@@ -136,18 +133,15 @@ void contactForces(const Store& S, Contacts& C, VolumeRule rule, double dt, Cont
 		C.a[c] = fma(al, dx, -ac * dy);
 		C.b[c] = fma(al, dy, ac * dx);
 		t[c]   = on ? C.share[c] * St : 0.;
-		if (work) {
+		if (account) {
 			const double p = on ? pr : 0., v = on ? q : 0.;
 			t[n + c] = -p * dx, t[2 * n + c] = -p * dy, t[3 * n + c] = v * dx, t[4 * n + c] = v * dy;
-			C.c[c] = 0.5 * v * along * dt;
 		}
 	}
 	addRows(C, C.a, out.fx);
 	addRows(C, C.b, out.fy);
 	addRows(C, t, out.torque);
-	if (!work) return;
-	for (long c = 0; c < n; c++)
-		work->viscous += C.c[c];
+	if (!account) return;
 	std::vector<double> part(n);
 	std::vector<double>* to[4] = { &out.volX, &out.volY, &out.visX, &out.visY };
 	for (int k = 0; k < 4; k++) {

@@ -12,13 +12,17 @@ constexpr double collapsed = 0.4;
 /// rest distance must not touch by round-off, since the viscosity acts from the first touch
 constexpr double touchShare = 1. - 1e-14;
 
+/// Half-contact c pushes at this distance squared. Two automata that have slid into each other do not touch until they have parted: near zero distance
+/// a pair force has no meaning, and the volume they share is held by their other neighbours.
+inline bool pushes(const Contacts& C, size_t c, double r2) { return r2 < touchShare * sqr(C.rest[c]) && C.rest[c] >= collapsed * C.d[c]; }
+
 /// Arrays of one entry per automaton that the contact passes fill for the passes over links.
 struct ContactScratch {
 	std::vector<double> sum, square, old, scale, fx, fy, torque, volX, volY, visX, visY;
 };
 
 struct ContactWork {
-	double friction = 0, viscous = 0, coupling = 0;
+	double friction = 0, coupling = 0;
 };
 
 /// New list of contacts from all exposed automata closer than (1 + skin) times their rest distance; stresses of pairs that go on are kept.
@@ -31,6 +35,6 @@ double contactDensity(const Store& S, Contacts& C, VolumeRule rule, ContactScrat
 double contactTrial(const Store& S, Contacts& C, double dt, ContactScratch& out, bool account);
 /// Radial return by scratch.scale, then no tension and Coulomb friction.
 void contactFriction(const Store& S, Contacts& C, VolumeRule rule, const ContactScratch& in, ContactWork* work);
-/// Forces; fills scratch.fx, fy, torque (and the account's shares when work is given).
-void contactForces(const Store& S, Contacts& C, VolumeRule rule, double dt, ContactScratch& out, ContactWork* work);
+/// Forces; fills scratch.fx, fy, torque (and the shares of pressure and viscosity for the account).
+void contactForces(const Store& S, Contacts& C, VolumeRule rule, ContactScratch& out, bool account);
 }

@@ -3,7 +3,7 @@
 
 namespace mca::automata {
 namespace {
-	template <VolumeRule rule, bool intact, bool mixed, bool viscous, bool account> void run(Store& S, size_t b, const Extra& E, double dt, BlockWork* work)
+	template <VolumeRule rule, bool intact, bool mixed, bool viscous, bool account> void run(Store& S, size_t b, const Extra& E)
 	{
 		const Block&    B = S.blocks[b];
 		const Material& m = S.materialOf(B);
@@ -18,11 +18,10 @@ namespace {
 		double *        fx = S.fx.data() + base, *fy = S.fy.data() + base, *tq = S.torque.data() + base;
 		const bool      contact = B.contact && E.contactFx;
 		const double    lin = m.viscosity.linear * m.eos.rho0 * m.eos.c0, quad = m.viscosity.quadratic * m.eos.rho0;
-		double          dissipated = 0;
 		for (int g = 0; g < blockSize; g += lanes) {
 			const v8 X = load(xi + g), Y = load(yi + g), VX = load(vxi + g), VY = load(vyi + g);
 			const m8 bits = intact ? m8 {} : widen(flags + g);
-			v8       Fx = {}, Fy = {}, Tq = {}, Vx = {}, Vy = {}, Qx = {}, Qy = {}, lost = {}, mxx, mxy, myx, myy;
+			v8       Fx = {}, Fy = {}, Tq = {}, Vx = {}, Vy = {}, Qx = {}, Qy = {}, mxx, mxy, myx, myy;
 			if (rule == VolumeRule::affine) gather4(push, 4, own + g, mxx, mxy, myx, myy);
 #pragma GCC unroll 6
 			for (int k = 0; k < nLinks; k++) {
@@ -77,7 +76,7 @@ namespace {
 					else
 						q = w * viscousCoefficient(along, inv, lin, quad, Lattice<2>::width(d));
 					al += q;
-					if (account) Qx = fma(q, dx, Qx), Qy = fma(q, dy, Qy), lost += 0.5 * q * along * dt;
+					if (account) Qx = fma(q, dx, Qx), Qy = fma(q, dy, Qy);
 				}
 				if (account) Vx -= px, Vy -= py;
 				Fx += fma(al, dx, fma(-ac, dy, -px));
@@ -89,35 +88,30 @@ namespace {
 					Tq = fma(0.5, St, Tq);
 			}
 			store(fx + g, Fx), store(fy + g, Fy), store(tq + g, Tq);
-			if (account) {
-				store(E.volX + base + g, Vx), store(E.volY + base + g, Vy), store(E.visX + base + g, Qx), store(E.visY + base + g, Qy);
-				for (int l = 0; l < lanes; l++)
-					dissipated += lost[l];
-			}
+			if (account) store(E.volX + base + g, Vx), store(E.volY + base + g, Vy), store(E.visX + base + g, Qx), store(E.visY + base + g, Qy);
 		}
 		if (contact)
 			for (int l = 0; l < blockSize; l++)
 				fx[l] += E.contactFx[base + l], fy[l] += E.contactFy[base + l], tq[l] += E.contactT[base + l];
-		if (account) work->viscous += dissipated;
 	}
-	template <VolumeRule rule, bool viscous, bool account> void choose(Store& S, size_t b, const Extra& E, double dt, BlockWork* w)
+	template <VolumeRule rule, bool viscous, bool account> void choose(Store& S, size_t b, const Extra& E)
 	{
 		const Block& B = S.blocks[b];
-		if (B.mixed) B.intact ? run<rule, true, true, viscous, account>(S, b, E, dt, w) : run<rule, false, true, viscous, account>(S, b, E, dt, w);
-		else B.intact ? run<rule, true, false, viscous, account>(S, b, E, dt, w) : run<rule, false, false, viscous, account>(S, b, E, dt, w);
+		if (B.mixed) B.intact ? run<rule, true, true, viscous, account>(S, b, E) : run<rule, false, true, viscous, account>(S, b, E);
+		else B.intact ? run<rule, true, false, viscous, account>(S, b, E) : run<rule, false, false, viscous, account>(S, b, E);
 	}
-	template <VolumeRule rule> void chooseFeatures(Store& S, size_t b, const Extra& E, double dt, BlockWork* w)
+	template <VolumeRule rule> void chooseFeatures(Store& S, size_t b, const Extra& E)
 	{
 		const bool viscous = S.materialOf(S.blocks[b]).viscosity.active() || S.blocks[b].mixed;
-		if (w) viscous ? choose<rule, true, true>(S, b, E, dt, w) : choose<rule, false, true>(S, b, E, dt, w);
-		else viscous ? choose<rule, true, false>(S, b, E, dt, w) : choose<rule, false, false>(S, b, E, dt, w);
+		if (E.volX) viscous ? choose<rule, true, true>(S, b, E) : choose<rule, false, true>(S, b, E);
+		else viscous ? choose<rule, true, false>(S, b, E) : choose<rule, false, false>(S, b, E);
 	}
 }
 
-void forcePass(Store& S, size_t b, VolumeRule rule, const Extra& E, double dt, BlockWork* w)
+void forcePass(Store& S, size_t b, VolumeRule rule, const Extra& E)
 {
-	if (rule == VolumeRule::affine) chooseFeatures<VolumeRule::affine>(S, b, E, dt, w);
-	else if (rule == VolumeRule::inversePower) chooseFeatures<VolumeRule::inversePower>(S, b, E, dt, w);
-	else chooseFeatures<VolumeRule::meanDistance>(S, b, E, dt, w);
+	if (rule == VolumeRule::affine) chooseFeatures<VolumeRule::affine>(S, b, E);
+	else if (rule == VolumeRule::inversePower) chooseFeatures<VolumeRule::inversePower>(S, b, E);
+	else chooseFeatures<VolumeRule::meanDistance>(S, b, E);
 }
 }

@@ -86,10 +86,7 @@ void Solver::keepVolume(size_t i)
 		}
 	const double det = (Fxx * Fyy - Fxy * Fyx) / (9. * sqr(S.diameter[i]));
 	S.jOff[i] = det > minVolume ? S.J[i] / det : 0.;
-	if (S.jOff[i] > 0.) return;
-	unsettled.push_back(int32_t(i));
-	// what its contacts had pressed goes: from now on they carry the volume that the links had
-	if (options.account && contacts.size() && S.blocks[i / blockSize].contact) sums.fracture += stateEnergy(i, 1. / (1. + scratch.sum[i] / nLinks));
+	if (S.jOff[i] == 0.) unsettled.push_back(int32_t(i));
 }
 
 // The rules that add up distances: the sum at rest takes over what the broken links held.
@@ -112,32 +109,44 @@ void Solver::keepSum(size_t i)
 }
 
 // An automaton without links has its volume from its contacts alone. Under pressure their rest distances are set so that the pressure goes on;
-// tension cannot: it is released, and booked.
+// tension cannot: it is released, and booked. With the affine rule contacts have had a volume of their own: the more compressed of the two goes on.
 void Solver::settleVolumes()
 {
 	Store&     S    = store;
-	const bool mean = options.volumeRule == VolumeRule::meanDistance;
+	const bool mean = options.volumeRule == VolumeRule::meanDistance, affine = options.volumeRule == VolumeRule::affine;
 	for (int32_t i : unsettled) {
 		const auto    row = std::lower_bound(contacts.rowOwner.begin(), contacts.rowOwner.end(), i);
 		const size_t  r   = size_t(row - contacts.rowOwner.begin());
-		const int32_t all = row != contacts.rowOwner.end() && *row == i ? contacts.rowBegin[r + 1] - contacts.rowBegin[r] : 0;
+		const bool    any = row != contacts.rowOwner.end() && *row == i;
+		const size_t  first = any ? contacts.rowBegin[r] : 0, last = any ? contacts.rowBegin[r + 1] : 0;
+		auto distance = [&](size_t c) { return std::sqrt(sqr(S.x[contacts.other[c]] - S.x[i]) + sqr(S.y[contacts.other[c]] - S.y[i])); };
 		// only neighbours about as near as in the packing can take over: a far one would push across a gap
-		auto distance = [&](int32_t c) { return std::sqrt(sqr(S.x[contacts.other[c]] - S.x[i]) + sqr(S.y[contacts.other[c]] - S.y[i])); };
-		int  n        = 0;
-		for (int32_t q = 0; q < all; q++)
-			n += distance(contacts.rowBegin[r] + q) < 1.1 * contacts.d[contacts.rowBegin[r] + q];
-		const double  J   = S.J[i];
-		const bool    holds = n >= 3 && J < 1.;
-		const double  need = mean ? (std::sqrt(J) - 1.) / (n * S.invN[i]) : (1. / J - 1.) / (n * S.invN[i]);
-		for (int32_t c = all ? contacts.rowBegin[r] : 0, q = 0; q < all; q++, c++) {
-			const double r0 = distance(c);
-			if (!holds || r0 >= 1.1 * contacts.d[c]) contacts.rest[c] = std::min(r0, contacts.d[c]);
-			else contacts.rest[c] = mean ? r0 / (1. + need) : r0 * std::sqrt(1. + need);
+		auto   near = [&](size_t c) { return distance(c) < 1.1 * contacts.d[c]; };
+		int    n   = 0;
+		double sum = 0;
+		for (size_t c = first; c < last; c++) {
+			const double r2 = sqr(distance(c));
+			n += near(c);
+			if (affine && pushes(contacts, c, r2)) sum += volumeTerm<VolumeRule::inversePower, 2>(contacts.rest[c], r2);
 		}
+		const double J = S.J[i], Jc = 1. / (1. + sum / nLinks);
+		const bool   holds = n >= 3 && J < Jc;
+		const double need = mean ? (std::sqrt(J) - 1.) / (n * S.invN[i]) : (1. / J - 1.) / (n * S.invN[i]);
+		if (holds || !affine)
+			for (size_t c = first; c < last; c++) {
+				const double r0 = distance(c);
+				if (!holds || !near(c)) contacts.rest[c] = std::min(r0, contacts.d[c]);
+				else contacts.rest[c] = mean ? r0 / (1. + need) : r0 * std::sqrt(1. + need);
+			}
+		const bool heat = S.materials[S.species[S.speciesOf(i)].material].eos.mieGrueneisen; // its volumetric energy is in the heat
+		if (options.account && holds) sums.fracture += affine ? stateEnergy(i, Jc) : 0.;
+		if (options.account && !holds && !heat) sums.fracture += stateEnergy(i, J);
 		if (holds) continue;
-		// the internal energy of Mie-Grueneisen materials stays where it is
-		if (options.account && !S.materialOf(S.blocks[i / blockSize]).eos.mieGrueneisen) sums.fracture += stateEnergy(i, J) - stateEnergy(i, 1.);
-		S.J[i] = 1.;
+		for (int k = 0; k < nLinks; k++) // stresses go on
+			S.s[linkSlot(i, k)] *= Jc / J, S.tau[linkSlot(i, k)] *= Jc / J;
+		for (size_t c = first; c < last; c++)
+			contacts.s[c] *= Jc / J, contacts.tau[c] *= Jc / J;
+		S.J[i] = Jc;
 	}
 	unsettled.clear();
 }

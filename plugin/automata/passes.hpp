@@ -20,7 +20,7 @@ struct BlockResult {
 
 /// Dissipation booked by the passes of one step for one block [J/m]; only when the account is kept.
 struct BlockWork {
-	double plastic = 0, coupling = 0, viscous = 0, friction = 0;
+	double plastic = 0, coupling = 0;
 	double heated = 0; ///< part of it that went into the internal energy of Mie-Grueneisen materials
 };
 
@@ -43,5 +43,5 @@ void stressPass(Store& S, size_t block, double dt, const Extra& X, BlockResult& 
 /// Mie-Grueneisen materials only: the heat of the pair viscosity of the last step goes into the internal energy.
 void viscousHeat(Store& S, size_t block, double dt, BlockWork* work);
 /// Pass 3: forces and torques.
-void forcePass(Store& S, size_t block, VolumeRule rule, const Extra& X, double dt, BlockWork* work);
+void forcePass(Store& S, size_t block, VolumeRule rule, const Extra& X);
 }

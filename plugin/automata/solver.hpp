@@ -17,6 +17,7 @@ struct Options {
 	bool       sleeping     = true; ///< leave out blocks that nothing has reached
 	bool       account      = false; ///< keep the energy account
 	bool       contacts     = true; ///< search for contacts
+	double     volumeFilter = 0.1; ///< rate at which the shortest waves of volume fade in flowing material, times d/c0 [-]; affine rule
 	bool       fullLinks    = false; ///< keep full weight of links and cells at weighted rims (no half bonds)
 };
 
@@ -35,13 +36,14 @@ struct Account {
 	double plastic = 0, viscous = 0, friction = 0, fracture = 0, coupling = 0, boundary = 0; ///< dissipated (coupling: exchanged) since build
 	double external = 0;                                                   ///< work of external forces and driven automata
 	double bookedVolumetric = 0, bookedDeviatoric = 0, bookedViscous = 0;  ///< work of the internal forces
+	double centre = 0; ///< velocities stand half a step after stresses: kinetic energy, work from outside and of viscous forces then, minus now
 	double kineticStart = 0, heated = 0; ///< heated: dissipation that stands in the internal energy of Mie-Grueneisen materials
 	double px = 0, py = 0, angular = 0;                                    ///< momentum [N s/m], angular momentum about the origin [N s]
 	double impulseX = 0, impulseY = 0;                                     ///< of external forces, driven and viscous boundaries [N s/m]
 	/// kinetic energy gained minus all work booked: round-off
 	double bookedError() const { return kinetic - kineticStart - bookedVolumetric - bookedDeviatoric - bookedViscous - external + boundary; }
-	/// independent sum now
-	double total() const { return kinetic + volumetric + deviatoric + plastic + viscous + friction + fracture + coupling + boundary - external; }
+	/// independent sum at the time of the stresses
+	double total() const { return kinetic + volumetric + deviatoric + plastic + viscous + friction + fracture + coupling + boundary - external + centre; }
 };
 
 struct Counters {
@@ -125,8 +127,11 @@ private:
 	void   keepSum(size_t i);
 	void   breakLinks();
 	void   settleVolumes();
+	void   filterVolumes();
+	void   shiftVolume(size_t i, double J);
 	void   checkResults(double nearestContact, size_t closest);
 	double stateEnergy(size_t i, double J) const;
+	double deviatoricEnergy(size_t i) const; ///< of links and szz [J/m]
 	template <class F> void eachAwake(F&& f);
 	template <class F> void archive(F&& f);
 	[[noreturn]] void       overlapError(size_t i, size_t j, double ratio) const;
@@ -139,6 +144,9 @@ private:
 	struct {
 		std::vector<double> volX, volY, visX, visY; ///< volumetric and viscous share of the forces of links
 	} accountForce;
+	std::vector<double>      curvature, change; ///< scratch of filterVolumes()
+	double                   filterTime = 0;    ///< since its last call [s]
+	bool                     flows = false;     ///< some material yields
 	int64_t                  lastSort = 0;
 	std::vector<int32_t>     unsettled; ///< lost its links in the present search: contacts must take over its volume
 	std::vector<double>      searchX, searchY; ///< positions of exposed automata at the last search

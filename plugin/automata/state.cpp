@@ -9,7 +9,7 @@
 
 namespace mca::automata {
 namespace {
-	constexpr uint64_t magic = 0x4d43413041303031ULL; // layout of this file; change it with every change of the arrays
+	constexpr uint64_t magic = 0x4d43413041303032ULL; // layout of this file; change it with every change of the arrays
 
 	struct Writer {
 		std::string out;
@@ -67,7 +67,7 @@ template <class F> void Solver::archive(F&& f)
 	for (auto v : { &place, &exposed, &adjacentBegin, &adjacent, &awake, &tied })
 		f(*v);
 	f(results);
-	f.value(options), f.value(counters), f.value(time), f.value(lastDt), f.value(lastMove), f.value(dtLimit), f.value(contactSpeed2), f.value(topologyChanged), f.value(searchDue), f.value(sums), f.value(lastSort);
+	f.value(options), f.value(counters), f.value(time), f.value(lastDt), f.value(lastMove), f.value(dtLimit), f.value(contactSpeed2), f.value(topologyChanged), f.value(searchDue), f.value(sums), f.value(lastSort), f.value(filterTime), f.value(flows);
 }
 
 std::string Solver::save() const

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // One step: forces, checks, time-step limit, integration.
 #include "solver.hpp"
+#include "volume_filter.hpp"
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -86,6 +87,11 @@ void Solver::computeForces()
 	}
 	wake();
 	counters.blockSteps += int64_t(awake.size());
+	filterTime += lastMove;
+	if (flows && options.volumeFilter > 0 && counters.steps % filterPeriod == 0) {
+		Timer t(timing, counters.nsDensity);
+		filterVolumes();
+	}
 	const bool       contact = contacts.size() > 0, account = options.account;
 	const VolumeRule rule    = options.volumeRule;
 	Extra            X;
@@ -126,11 +132,11 @@ void Solver::computeForces()
 	if (contact) {
 		Timer t(timing, counters.nsContact);
 		if (lastMove > 0) contactFriction(S, contacts, rule, scratch, account ? &cw : nullptr);
-		contactForces(S, contacts, rule, lastMove, scratch, account ? &cw : nullptr);
+		contactForces(S, contacts, rule, scratch, account);
 	}
 	{
 		Timer t(timing, counters.nsForce);
-		eachAwake([&](size_t b) { forcePass(S, b, rule, X, lastMove, account ? &works[b] : nullptr); });
+		eachAwake([&](size_t b) { forcePass(S, b, rule, X); });
 	}
 	if (!S.heat.empty() && lastMove > 0)
 		eachAwake([&](size_t b) {
@@ -139,8 +145,8 @@ void Solver::computeForces()
 		});
 	if (account) {
 		for (int32_t b : awake)
-			sums.plastic += works[b].plastic, sums.coupling += works[b].coupling, sums.viscous += works[b].viscous, sums.heated += works[b].heated;
-		sums.friction += cw.friction, sums.coupling += cw.coupling, sums.viscous += cw.viscous;
+			sums.plastic += works[b].plastic, sums.coupling += works[b].coupling, sums.heated += works[b].heated;
+		sums.friction += cw.friction, sums.coupling += cw.coupling;
 	}
 	// 2.8: all blocks, the sleeping ones with their state of rest
 	double limit = 1e300, pressed = 0; // stiffest of what meets something else [Pa]: its pressure moves lighter neighbours, too, from one side
@@ -199,6 +205,7 @@ void Solver::integrate(double dt)
 	if (account)
 		for (auto& p : partials)
 			p.assign(8, 0.);
+	const double after = 0.5 * dt / kick; // share of the kick that comes after the time of the forces
 	eachAwake([&](size_t b) {
 		const size_t base = b * blockSize;
 		const bool   withContact = account && contact && S.blocks[b].contact;
@@ -228,6 +235,9 @@ void Solver::integrate(double dt)
 				const double dampedX = S.ax[i] > 0 ? dX * mx : 0., dampedY = S.ay[i] > 0 ? dY * my : 0.;
 				p[4] += (dampedX * mx + dampedY * my) / kick;
 				p[5] += ex * kick - dampedX, p[6] += ey * kick - dampedY;
+				const double cx = vx - after * (vx - S.vx[i]), cy = vy - after * (vy - S.vy[i]), cw = w - after * (w - S.omega[i]);
+				if (!(S.flags[i] & tiedBit)) p[7] += 0.5 * S.mass[i] * (cx * cx + cy * cy - vx * vx - vy * vy);
+				if (!(S.flags[i] & tiedBit) || S.ar[i] > 0) p[7] += 0.5 * S.inertia[i] * (cw * cw - w * w);
 			}
 			S.vx[i] = vx, S.vy[i] = vy, S.omega[i] = w;
 			S.x[i]     = fma(vx, dt, S.x[i]);
@@ -238,8 +248,10 @@ void Solver::integrate(double dt)
 		if (moving > 0) S.blocks[b].moving = true;
 	});
 	if (account) {
+		const double external = sums.external, boundary = sums.boundary, viscous = sums.bookedViscous;
+		sums.centre = 0;
 		for (auto& p : partials)
-			sums.bookedVolumetric += p[0], sums.bookedViscous += p[1], sums.bookedDeviatoric += p[2], sums.external += p[3], sums.boundary += p[4], sums.impulseX += p[5], sums.impulseY += p[6];
+			sums.centre += p[7], sums.bookedVolumetric += p[0], sums.bookedViscous += p[1], sums.bookedDeviatoric += p[2], sums.external += p[3], sums.boundary += p[4], sums.impulseX += p[5], sums.impulseY += p[6];
 		for (size_t t = 0; t < tied.size(); t++) { // their velocity had been set before: the mean is that of old and new
 			const size_t i = tied[t];
 			double       Vx = accountForce.volX[i], Vy = accountForce.volY[i], Qx = accountForce.visX[i], Qy = accountForce.visY[i];
@@ -248,6 +260,8 @@ void Solver::integrate(double dt)
 			const double a = Vx * mx + Vy * my, q = Qx * mx + Qy * my, all = S.fx[i] * mx + S.fy[i] * my + S.torque[i] * mw;
 			sums.bookedVolumetric += a, sums.bookedViscous += q, sums.bookedDeviatoric += all - a - q, sums.external -= all;
 		}
+		sums.viscous -= sums.bookedViscous - viscous;
+		sums.centre += after * (sums.external - external - sums.boundary + boundary + sums.bookedViscous - viscous);
 	}
 	lastDt = lastMove = dt;
 	time += dt;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // McaDensity: set-up, the order of a step, checks.
 #include "McaDensity.hpp"
+#include <automata/volume_filter.hpp>
 #include "McaBodies.hpp"
 #include "McaCast.hpp"
 #include <core/InteractionLoop.hpp>
@@ -222,6 +223,8 @@ void McaDensity::action()
 		if (steps % automata::breakPeriod == 0) breakLinks();
 		findContacts(scene);
 		settleVolumes(scene->trackEnergy);
+		filterTime += lastMove;
+		if (volumeFilter > 0 && rule() == mca::VolumeRule::affine && steps % automata::filterPeriod == 0) filterVolumes(scene->trackEnergy);
 		const long n = long(rows.size());
 #pragma omp parallel for schedule(static)
 		for (long i = 0; i < n; i++)

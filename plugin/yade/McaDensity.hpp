@@ -28,6 +28,8 @@ public:
 		"first step; bodies added later meet as contacts. O.dt is checked against the largest stable step, or set by :yref:`McaTimeStepper`.",
 		((string, volumeRule, "affine", , "'affine', 'inversePower' or 'meanDistance', see McaEngine"))
 		((Real, linkFactor, 1.2, , "bodies closer than this many diameters are linked at the start [-]"))
+		((Real, volumeFilter, 0.1, , "see McaEngine"))
+		((Real, filterTime, 0, Attr::hidden, "since the last exchange of volume [s]"))
 		((int, seed, 1, , "seed of the scattered strengths"))
 		((long, steps, 0, Attr::readonly, "steps done"))
 		((Real, dtLimit, std::numeric_limits<Real>::infinity(), Attr::readonly, "largest stable time step at the present state [s]"))
@@ -39,6 +41,7 @@ public:
 		((long, brokenLinks, 0, Attr::readonly, "links broken"))
 		((Real, plastic, 0, Attr::readonly, "plastic work so far, while O.trackEnergy [J/m]"))
 		((Real, viscous, 0, Attr::readonly, "heat of the artificial viscosity so far, while O.trackEnergy [J/m]"))
+		((Real, lastViscous, 0, Attr::hidden, "its part of the last step [J/m]"))
 		((Real, frictional, 0, Attr::readonly, "energy lost in contacts so far, while O.trackEnergy [J/m]"))
 		((Real, fracture, 0, Attr::readonly, "energy released by fracture so far, while O.trackEnergy [J/m]"))
 		((Real, coupling, 0, Attr::readonly, "work of the pair stresses that went into volume so far, while O.trackEnergy [J/m]"))
@@ -67,6 +70,7 @@ public:
 		Real                 d        = 0; ///< diameter [m]
 		Side                 link[6];
 		int                  firstContact = 0, lastContact = 0; ///< in contacts, ascending ids
+		Real                 curvature = 0;                     ///< second difference of the volume
 		// of this step
 		Real   limit = 0, stiff = 0, closing = 0, nearestLink = 1, nearestContact = 1;
 		bool   clampedNow = false, bad = false;
@@ -93,13 +97,14 @@ private:
 	void                       settleVolumes(bool account);
 	Real                       distance(const Row&, const Side&) const;
 	void                       contactVolume(Row&);
+	void                       filterVolumes(bool account);
 	void                       volume(Row&, bool withContacts);
 	void                       stress(Row&);
 	void                       contactFriction(Row&);
 	void                       checkResults();
 	[[noreturn]] void          overlapError(const Row&, const Side&, Real ratio) const;
 	Real                       stateEnergy(const Row&, Real J) const;
-	void                       stateEnergies(const Scene&, Real& volumetric, Real& deviatoric, Real& kinetic) const;
+	void                       stateEnergies(Scene&, Real& volumetric, Real& deviatoric, Real& kinetic, Real& centre) const;
 	void                       bookEnergies(Scene*);
 	int                        energyIndex[7] = { -1, -1, -1, -1, -1, -1, -1 };
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // McaDensity: breaking of links, at the steps and in the order of plugin/automata/fracture.cpp.
 #include "McaDensity.hpp"
+#include <automata/volume_filter.hpp>
 
 namespace yade {
 using mca::sqr;
@@ -64,9 +65,7 @@ void McaDensity::keepVolume(int i)
 		}
 		const Real det = (Fxx * Fyy - Fxy * Fyx) / (9. * sqr(r.d));
 		l.offset       = det > mca::automata::minVolume ? J / det : 0.;
-		if (l.offset > 0) return;
-		unsettled.push_back(i);
-		fracture += stateEnergy(r, 1. / (1. + l.contactSum / nLinks)); // what its contacts had pressed goes: from now on they carry the volume that the links had
+		if (l.offset == 0) unsettled.push_back(i);
 		return;
 	}
 	const bool inverse = l.rule == int(VolumeRule::inversePower);
@@ -85,30 +84,82 @@ void McaDensity::keepVolume(int i)
 Real McaDensity::stateEnergy(const Row& r, Real J) const { return r.l->cell * mca::storedEnergy(r.material->eos, J - 1.); }
 
 // An automaton that has lost its volume has it from its contacts alone. Under pressure their rest distances are set so that the pressure goes on;
-// tension is released, and booked.
+// tension is released, and booked. With the affine rule contacts have had a volume of their own: the more compressed of the two goes on.
 void McaDensity::settleVolumes(bool account)
 {
 	for (int i : unsettled) {
 		Row&       r    = rows[size_t(i)];
-		const bool mean = r.l->rule == int(VolumeRule::meanDistance);
-		const Real J    = r.m->volumeRatio;
+		const bool mean = r.l->rule == int(VolumeRule::meanDistance), affine = r.l->rule == int(VolumeRule::affine);
 		// only neighbours about as near as in the packing can take over: a far one would push across a gap
 		const auto near = [&](const Side& s) { return distance(r, s) < 1.1 * s.p->d; };
 		int        n    = 0;
-		for (int c = r.firstContact; c < r.lastContact; c++)
-			n += near(contacts[size_t(c)]);
-		const bool holds = n >= 3 && J < 1.;
-		const Real need  = mean ? (std::sqrt(J) - 1.) / (n * r.l->invN) : (1. / J - 1.) / (n * r.l->invN);
+		Real       sum  = 0;
 		for (int c = r.firstContact; c < r.lastContact; c++) {
+			const Side& s  = contacts[size_t(c)];
+			const Real  r2 = sqr(distance(r, s));
+			n += near(s);
+			if (affine && s.p->pushes(s.side, r2)) sum += mca::volumeTerm<VolumeRule::inversePower, 2>(s.p->rest[s.side], r2);
+		}
+		const Real J = r.m->volumeRatio, Jc = 1. / (1. + sum / nLinks);
+		const bool holds = n >= 3 && J < Jc;
+		const Real need  = mean ? (std::sqrt(J) - 1.) / (n * r.l->invN) : (1. / J - 1.) / (n * r.l->invN);
+		for (int c = r.firstContact; (holds || !affine) && c < r.lastContact; c++) {
 			const Side& s  = contacts[size_t(c)];
 			const Real  r0 = distance(r, s);
 			if (!holds || !near(s)) s.p->rest[s.side] = std::min(r0, s.p->d);
 			else s.p->rest[s.side] = mean ? r0 / (1. + need) : r0 * std::sqrt(1. + need);
 		}
+		if (account && holds) fracture += affine ? stateEnergy(r, Jc) : 0.;
+		if (account && !holds && !r.material->eos.mieGrueneisen) fracture += stateEnergy(r, J); // else it is in the heat
 		if (holds) continue;
-		if (account && !r.material->eos.mieGrueneisen) fracture += stateEnergy(r, J) - stateEnergy(r, 1.);
-		r.m->volumeRatio = 1.;
+		for (const Side& s : r.link) // stresses go on
+			if (s.p) s.p->s[s.side] *= Jc / J, s.p->tau[s.side] *= Jc / J;
+		for (int c = r.firstContact; c < r.lastContact; c++) {
+			const Side& s = contacts[size_t(c)];
+			s.p->s[s.side] *= Jc / J, s.p->tau[s.side] *= Jc / J;
+		}
+		r.m->volumeRatio = Jc;
 	}
 	unsettled.clear();
+}
+
+// The same exchange as in plugin/automata/volume_filter.cpp.
+void McaDensity::filterVolumes(bool account)
+{
+	const auto exchanges = [](const Row& r) { return mca::automata::exchangesVolume(r.m->plasticStrain, r.l->flags, r.l->offset); };
+	for (Row& r : rows) {
+		r.curvature = 0;
+		if (!exchanges(r)) continue;
+		for (const Side& s : r.link)
+			r.curvature += rows[size_t(s.other)].m->volumeRatio - r.m->volumeRatio;
+	}
+	vector<Real> change(rows.size(), 0.);
+	for (size_t i = 0; i < rows.size(); i++) {
+		const Row& r = rows[i];
+		if (!exchanges(r)) continue;
+		Real sum = 0;
+		for (const Side& s : r.link) {
+			const Row& o = rows[size_t(s.other)];
+			if (exchanges(o) && o.material == r.material && o.d == r.d) sum += r.curvature - o.curvature;
+		}
+		change[i] = mca::automata::volumeExchange(volumeFilter, r.material->eos.c0, filterTime, r.d) * sum;
+	}
+	for (size_t i = 0; i < rows.size(); i++) {
+		if (change[i] == 0) continue;
+		Row&       r = rows[i];
+		const Real J = r.m->volumeRatio + change[i], ratio = J / r.m->volumeRatio, G = r.material->G;
+		if (account) {
+			Real square = 0;
+			for (const Side& s : r.link)
+				square += sqr(s.p->s[s.side]) + sqr(s.p->tau[s.side]);
+			const Real held = G > 0 ? (square / (nLinks * r.m->volumeRatio) + 0.5 * r.m->volumeRatio * sqr(r.m->stressZZ)) * mca::Lattice<2>::cell(r.d) / (2. * G) : 0.;
+			coupling += (r.material->eos.mieGrueneisen ? 0. : stateEnergy(r, r.m->volumeRatio) - stateEnergy(r, J)) + held * (1. - ratio);
+		}
+		r.m->volumeRatio = J;
+		r.l->offset *= ratio;
+		for (const Side& s : r.link)
+			s.p->s[s.side] *= ratio, s.p->tau[s.side] *= ratio;
+	}
+	filterTime = 0;
 }
 } // namespace yade

@@ -174,14 +174,15 @@ void McaDensity::stress(Row& r)
 		const Row&  o   = rows[size_t(s.other)];
 		const Real  r2  = vectorTo(*r.state, *o.state).squaredNorm(), inv = 1. / r2, a = p.rest[s.side], b = p.rest[1 - s.side];
 		const Real  pr  = (p.pushes(s.side, r2) ? l.share * pressureShape(l.rule, a, inv) : 0.) + (p.pushes(1 - s.side, r2) ? o.l->share * pressureShape(l.rule, b, inv) : 0.);
-		const Real  most = pr * r2 / (Lattice<2>::width(p.d) * p.d), s0 = p.s[s.side] * scale, t0 = p.tau[s.side] * scale;
+		const Real  most = pr * r2 / (Lattice<2>::width(p.d) * p.d), st = p.s[s.side] * J, tt = p.tau[s.side] * J, s0 = p.s[s.side] * scale, t0 = p.tau[s.side] * scale;
 		const Real  sn = std::min(s0, most), tMax = p.friction * (most - sn), tn = std::min(std::max(t0, -tMax), tMax);
 		p.s[s.side] = sn, p.tau[s.side] = tn;
 		// account, this side's half: taken out at the mean of the stresses before and after the step; a pair that parts loses what it still held
 		const Real area = 0.5 * Lattice<2>::width(p.d) * p.d, perG = p.twoG > 0 ? 0.5 * area / p.twoG / J : 0.;
 		const Real so = heldBefore[size_t(c - r.firstContact)][0] * J, to = heldBefore[size_t(c - r.firstContact)][1] * J, held = perG * fma(so, so, to * to);
 		const bool on = p.touching(r2);
-		r.friction += on ? perG * ((so + sn) * (s0 - sn) + (to + tn) * (t0 - tn)) : held;
+		// (so + sn)(st - sn) in all; the plastic work has (so + s0)(st - s0) of it
+		r.friction += on ? perG * ((so + sn) * (s0 - sn) + (to + tn) * (t0 - tn) + (sn - s0) * (st - s0) + (tn - t0) * (tt - t0)) : held;
 		if (on) r.coupling += area * 0.5 * (so + sn) * (l.dTheta + o.l->dTheta) * (1. / 6.) - l.dTheta * held;
 	}
 	const Real eq2     = fma(3. * sqr(back.scale), square * l.invN, 1.5 * sqr(m.stressZZ));

@@ -52,7 +52,8 @@ mca::automata::Options McaEngine::solverOptions(Scene* scene) const
 	within("linkFactor", linkFactor, 1.02, 1.5);
 	within("skin", skin, 0.05, 1.);
 	within("dtFactor", dtFactor, 1e-6, 1.);
-	o.linkFactor = linkFactor, o.skin = skin, o.sleeping = sleeping, o.contacts = contacts;
+	within("volumeFilter", volumeFilter, 0., 1.);
+	o.volumeFilter = volumeFilter, o.linkFactor = linkFactor, o.skin = skin, o.sleeping = sleeping, o.contacts = contacts;
 	o.account = account || scene->trackEnergy;
 	return o;
 }

@@ -48,6 +48,7 @@ public:
 		((string, volumeRule, "affine", , "'affine' (default: J = det F of the links, exact in any homogeneous deformation), 'inversePower' (density from the mean of (d/r)^2) or 'meanDistance' (as published; its lattice buckles under strong plastic compression)"))
 		((Real, linkFactor, 1.2, , "bodies closer than this many diameters are linked at the start [-]"))
 		((Real, skin, 0.4, , "range of the contact search beyond touching, in diameters [-]"))
+		((Real, volumeFilter, 0.1, , "rate at which stripes of volume (alternate rows) fade in flowing material, in c0/d [-]; 0 ... 1, 0: off. They cost no force, so nothing else takes them away; affine rule"))
 		((bool, sleeping, true, , "leave out regions that nothing has reached; changes no result"))
 		((bool, contacts, true, , "search for contacts"))
 		((bool, account, false, , "keep the energy account (also on when O.trackEnergy)"))

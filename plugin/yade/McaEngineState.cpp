@@ -41,7 +41,7 @@ void McaEngine::writeEnergies(Scene* scene)
 {
 	const auto  a       = solver->account();
 	const char* names[] = { "mcaKinetic", "mcaVolumetric", "mcaDeviatoric", "mcaPlastic", "mcaViscous", "mcaFriction", "mcaFracture", "mcaCoupling", "mcaBoundary", "mcaExternal" };
-	const Real  values[] = { a.kinetic, a.volumetric, a.deviatoric, a.plastic, a.viscous, a.friction, a.fracture, a.coupling, a.boundary, -a.external };
+	const Real  values[] = { a.kinetic + a.centre, a.volumetric, a.deviatoric, a.plastic, a.viscous, a.friction, a.fracture, a.coupling, a.boundary, -a.external };
 	for (int k = 0; k < 10; k++)
 		scene->energy->set(values[k], names[k], energyIndex[k]);
 }

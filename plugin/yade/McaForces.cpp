@@ -2,9 +2,9 @@
 // The end of the law's step: sums of the pair forces in a fixed order, energies.
 #include "McaCast.hpp"
 #include "McaDensity.hpp"
+#include <pkg/common/Sphere.hpp>
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
-#include <pkg/common/Sphere.hpp>
 
 namespace yade {
 YADE_PLUGIN((McaForces));
@@ -12,10 +12,11 @@ using mca::sqr;
 using mca::automata::nLinks;
 
 namespace {
-	/// Force [N/m], torque about z [N] and viscous power [W/m] on one body, links in the order of their slots, then the others by id.
+	/// Force [N/m], torque about z [N], viscous share of the force [N/m] and viscous power of the links [W/m] on one body, links in the order of their slots, then the others by id.
 	struct Sum {
 		Vector3r force = Vector3r::Zero();
-		Real     torque = 0, linkHeat = 0, otherHeat = 0;
+		Vector2r viscous = Vector2r::Zero();
+		Real     torque = 0, linkHeat = 0;
 		bool     any = false;
 		void     add(const Body& b, const McaLawState* l)
 		{
@@ -26,14 +27,14 @@ namespace {
 				const auto* p = castTo<const McaPhys>(entry.second->phys.get());
 				if (!p) continue;
 				any             = true;
-				const int  side = entry.second->getId1() == b.id ? 0 : 1;
+				const int side = entry.second->getId1() == b.id ? 0 : 1;
+				viscous += side ? Vector2r(-p->viscousForce) : p->viscousForce;
 				if (p->linked && l) {
 					linked[side ? (p->slot + 3) % nLinks : p->slot] = p;
 					continue;
 				}
 				others += side ? Vector3r(-p->force) : p->force;
 				otherTorque += p->torque[side];
-				otherHeat += 0.5 * p->heatRate;
 			}
 			for (int k = 0; k < nLinks; k++) {
 				if (!linked[k]) continue;
@@ -45,6 +46,15 @@ namespace {
 			force += others, torque += otherTorque;
 		}
 	};
+	/// Velocity half a step (share 0.5 before, -0.5 after NewtonIntegrator) towards the time of the forces [m/s].
+	Vector2r meanVelocity(Scene& scene, int id, const State& s, Real share)
+	{
+		const Vector3r& f = scene.forces.getForce(id);
+		Vector2r        v(s.vel[0], s.vel[1]);
+		for (int axis = 0; axis < 2; axis++)
+			if (!(s.blockedDOFs & (axis ? State::DOF_Y : State::DOF_X)) && s.mass > 0) v[axis] += share * scene.dt * f[axis] / s.mass;
+		return v;
+	}
 } // namespace
 
 void McaForces::action()
@@ -86,17 +96,25 @@ void McaDensity::addForces(Scene* scene)
 			r.m->dissipated += s.linkHeat * lastMove / (r.material->eos.rho0 * r.l->cell);
 			if (scene->trackEnergy) heated += s.linkHeat * lastMove;
 		}
-		if (scene->trackEnergy) viscous += (s.linkHeat + s.otherHeat) * lastMove;
 	}
-	if (scene->trackEnergy) bookEnergies(scene);
+	if (scene->trackEnergy) {
+		scene->forces.sync();
+		lastViscous = 0;
+		for (const Row& r : rows) // the work of this step: with the mean of the velocities before and after it
+			lastViscous -= sums[size_t(r.id)].viscous.dot(meanVelocity(*scene, r.id, *r.state, 0.5)) * scene->dt;
+		viscous += lastViscous;
+		bookEnergies(scene);
+	}
 	lastMove = scene->dt;
 	steps++;
 }
 
 // State energies: volume and deviator of all automata [J/m].
-void McaDensity::stateEnergies(const Scene& scene, Real& volumetric, Real& deviatoric, Real& kinetic) const
+void McaDensity::stateEnergies(Scene& scene, Real& volumetric, Real& deviatoric, Real& kinetic, Real& centre) const
 {
 	volumetric = deviatoric = kinetic = 0;
+	centre = -0.5 * lastViscous; // velocities stand half a step after stresses
+	scene.forces.sync();
 	vector<const McaMat*> seen;
 	vector<mca::Material> constants;
 	for (const auto& b : scene.bodies->body) {
@@ -110,6 +128,8 @@ void McaDensity::stateEnergies(const Scene& scene, Real& volumetric, Real& devia
 		volumetric += c.eos.mieGrueneisen ? l.cell * c.eos.rho0 * m->dissipated : l.cell * mca::storedEnergy(c.eos, m->volumeRatio - 1.);
 		if (l.rule == int(mca::VolumeRule::affine) && l.offset > 0) volumetric += l.cell * mca::storedEnergy(c.eos, 1. / (1. + l.contactSum / nLinks) - 1.);
 		kinetic += 0.5 * (m->mass * m->vel.squaredNorm() + m->inertia[2] * sqr(m->angVel[2]));
+		centre += 0.5 * m->mass * (meanVelocity(scene, b->id, *m, -0.5).squaredNorm() - m->vel.squaredNorm());
+		if (!(m->blockedDOFs & State::DOF_RZ) && m->inertia[2] > 0) centre += 0.5 * m->inertia[2] * (sqr(m->angVel[2] - 0.5 * scene.dt * scene.forces.getTorque(b->id)[2] / m->inertia[2]) - sqr(m->angVel[2]));
 		if (!(c.G > 0)) continue;
 		Real square = 0;
 		for (const auto& entry : b->intrs) {
@@ -127,8 +147,8 @@ void McaDensity::stateEnergies(const Scene& scene, Real& volumetric, Real& devia
 
 void McaDensity::bookEnergies(Scene* scene)
 {
-	Real volumetric, deviatoric, kinetic;
-	stateEnergies(*scene, volumetric, deviatoric, kinetic);
+	Real volumetric, deviatoric, kinetic, centre;
+	stateEnergies(*scene, volumetric, deviatoric, kinetic, centre);
 	const char* names[]  = { "mcaVolumetric", "mcaDeviatoric", "mcaPlastic", "mcaViscous", "mcaFriction", "mcaFracture", "mcaCoupling" };
 	const Real  values[] = { volumetric, deviatoric, plastic, viscous, frictional, fracture, coupling };
 	for (int k = 0; k < 7; k++)
@@ -137,11 +157,11 @@ void McaDensity::bookEnergies(Scene* scene)
 
 py::dict McaDensity::energies()
 {
-	Real volumetric, deviatoric, kinetic;
-	stateEnergies(*Omega::instance().getScene(), volumetric, deviatoric, kinetic);
+	Real volumetric, deviatoric, kinetic, centre;
+	stateEnergies(*Omega::instance().getScene(), volumetric, deviatoric, kinetic, centre);
 	py::dict d;
 	d["kinetic"] = kinetic, d["volumetric"] = volumetric, d["deviatoric"] = deviatoric, d["plastic"] = plastic, d["viscous"] = viscous, d["friction"] = frictional, d["fracture"] = fracture;
-	d["coupling"] = coupling, d["total"] = kinetic + volumetric + deviatoric + plastic + viscous + frictional + fracture + coupling;
+	d["coupling"] = coupling, d["total"] = kinetic + centre + volumetric + deviatoric + plastic + viscous + frictional + fracture + coupling;
 	return d;
 }
 

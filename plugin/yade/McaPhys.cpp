@@ -119,7 +119,7 @@ bool Law2_ScGeom_McaPhys_Mca::go(shared_ptr<IGeom>& geom, shared_ptr<IPhys>& phy
 	const State &      sa = *A.state, &sb = *B.state;
 	const Real         dx = sb.se3.position[0] - sa.se3.position[0], dy = sb.se3.position[1] - sa.se3.position[1], r2 = dx * dx + dy * dy, inv = 1. / r2;
 	p.force = p.normalForce = p.shearForce = Vector3r::Zero();
-	p.torque = Vector2r::Zero(), p.heatRate = 0;
+	p.torque = Vector2r::Zero(), p.heatRate = 0, p.viscousForce = Vector2r::Zero();
 	if (!p.linked && !(p.active && p.touching(r2))) return p.linked || r2 < sqr(range * p.d); // returning false erases the pair
 
 	const Real w    = p.linked && p.half ? 0.5 : 1.;
@@ -140,7 +140,7 @@ bool Law2_ScGeom_McaPhys_Mca::go(shared_ptr<IGeom>& geom, shared_ptr<IPhys>& phy
 	const Real al = Sn * inv + q, ac = St * inv;
 	p.force       = Vector3r(al * dx - ac * dy - px, al * dy + ac * dx - py, 0);
 	p.torque      = Vector2r(p.share, 1. - p.share) * St;
-	p.heatRate    = q * along;
+	p.heatRate    = q * along, p.viscousForce = Vector2r(q * dx, q * dy);
 	const Vector3r n(dx * std::sqrt(inv), dy * std::sqrt(inv), 0);
 	p.normalForce = -p.force.dot(n) * n;
 	p.shearForce  = -p.force - p.normalForce;
