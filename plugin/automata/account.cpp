@@ -32,8 +32,8 @@ Account Solver::account() const
 	A.volumetric -= A.heated;
 	for (size_t c = 0; c < contacts.size(); c++) {
 		const int32_t i = contacts.owner[c];
-		const double  G = S.materials[S.species[S.speciesOf(i)].material].G;
-		if (G > 0) A.deviatoric += Lattice<2>::cell(S.diameter[i]) / nLinks * (sqr(contacts.s[c]) + sqr(contacts.tau[c])) / (S.J[i] * 2. * G);
+		// with the stiffness of the pair, which between unlike materials is neither's own
+		if (contacts.twoG[c] > 0) A.deviatoric += Lattice<2>::cell(S.diameter[i]) / nLinks * (sqr(contacts.s[c]) + sqr(contacts.tau[c])) / (S.J[i] * contacts.twoG[c]);
 	}
 	return A;
 }
@@ -54,8 +54,16 @@ double Solver::deviatoricEnergy(size_t i) const
 {
 	const Store& S = store;
 	const double G = S.materials[S.species[S.speciesOf(i)].material].G;
-	// the pairs stand for the volume Omega0/(6 invN), which on weighted rims is not the cell
-	return G > 0 ? Lattice<2>::cell(S.diameter[i]) / (nLinks * S.invN[i]) * S.J[i] * sqr(equivalentStress(i)) / (6. * G) : 0.;
+	if (!(G > 0)) return 0.;
+	double pairs = 0;
+	for (int k = 0; k < nLinks; k++)
+		if ((S.flags[i] >> k) & 1) {
+			const size_t j = S.neighbour[linkSlot(i, k)];
+			const double w = (S.flags[i] >> (halfShift + k)) & 1 ? 0.5 : 1., twoG = S.pairTwoG(S.speciesOf(i), j, S.diameter[i] / (S.diameter[i] + S.diameter[j]));
+			if (twoG > 0) pairs += w * (sqr(S.s[linkSlot(i, k)]) + sqr(S.tau[linkSlot(i, k)])) / (S.J[i] * twoG);
+		}
+	// a pair side stands for a sixth of the full cell; szz for the volume of all, which on weighted rims is not the cell
+	return Lattice<2>::cell(S.diameter[i]) / nLinks * (pairs + S.J[i] * sqr(S.szz[i]) / (4. * G * S.invN[i]));
 }
 
 size_t Solver::stiffestAutomaton() const

@@ -167,8 +167,9 @@ void searchContacts(Store& S, Contacts& C, double skin, int threads)
 			C.rowBegin.push_back(C.rowBegin.back() + s);
 	}
 	const size_t m = C.size();
-	for (auto v : { &C.s, &C.tau, &C.rest, &C.d, &C.twoG, &C.friction, &C.viscLinear, &C.viscQuadratic, &C.share, &C.a, &C.b, &C.c })
+	for (auto v : { &C.s, &C.tau, &C.rest, &C.d, &C.twoG, &C.friction, &C.viscLinear, &C.viscQuadratic, &C.share })
 		v->assign(m, 0.);
+	C.sizeScratch();
 	C.reverse.assign(m, 0);
 	std::vector<int32_t> rowOf(S.size(), -1);
 	for (size_t r = 0; r < C.rows(); r++)

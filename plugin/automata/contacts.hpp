@@ -19,6 +19,7 @@ inline bool pushes(const Contacts& C, size_t c, double r2) { return r2 < touchSh
 /// Arrays of one entry per automaton that the contact passes fill for the passes over links.
 struct ContactScratch {
 	std::vector<double> sum, square, old, scale, fx, fy, torque, volX, volY, visX, visY;
+	std::vector<double> terms; ///< per half-contact
 };
 
 struct ContactWork {
@@ -29,12 +30,14 @@ struct ContactWork {
 /// Deterministic: rows in the order of the arrays, entries of a row in the order of their callers' numbers.
 void searchContacts(Store& S, Contacts& C, double skin, int threads);
 
-/// (r/d)^2 of the closest contact; fills scratch.sum. closest: its place in the list.
+/// Geometry of this step and volume terms: fills scratch.sum. Returns (r/d)^2 of the closest contact; closest: its place in the list.
 double contactDensity(const Store& S, Contacts& C, VolumeRule rule, ContactScratch& out, size_t& closest);
 /// Trial stresses; fills scratch.square, and for the account scratch.old, the products of old and trial stresses. Returns the largest relative speed squared [m2/s2] of listed pairs.
 double contactTrial(const Store& S, Contacts& C, double dt, ContactScratch& out, bool account);
+/// Pressure of the pairs that push, from the volumes after the density pass.
+void contactPressure(const Store& S, Contacts& C, VolumeRule rule);
 /// Radial return by scratch.scale, then no tension and Coulomb friction.
-void contactFriction(const Store& S, Contacts& C, VolumeRule rule, const ContactScratch& in, ContactWork* work);
+void contactFriction(const Store& S, Contacts& C, const ContactScratch& in, ContactWork* work);
 /// Forces; fills scratch.fx, fy, torque (and the shares of pressure and viscosity for the account).
-void contactForces(const Store& S, Contacts& C, VolumeRule rule, ContactScratch& out, bool account);
+void contactForces(Contacts& C, ContactScratch& out, bool account);
 }

@@ -92,7 +92,7 @@ void Solver::load(const std::string& bytes)
 	if (r.at != body.size()) throw Error("the saved state of the automata is damaged: bytes are left over.");
 	fresh.timing = timing;
 	fresh.works.assign(fresh.store.blocks.size(), {});
-	fresh.contacts.a.assign(fresh.contacts.size(), 0.), fresh.contacts.b = fresh.contacts.c = fresh.contacts.a;
+	fresh.contacts.sizeScratch();
 	fresh.contactAdjacent.clear();
 	fresh.store.packAll();
 	*this = std::move(fresh);

@@ -131,8 +131,9 @@ void Solver::computeForces()
 	}
 	if (contact) {
 		Timer t(timing, counters.nsContact);
-		if (lastMove > 0) contactFriction(S, contacts, rule, scratch, account ? &cw : nullptr);
-		contactForces(S, contacts, rule, scratch, account);
+		contactPressure(S, contacts, rule);
+		if (lastMove > 0) contactFriction(S, contacts, scratch, account ? &cw : nullptr);
+		contactForces(contacts, scratch, account);
 	}
 	{
 		Timer t(timing, counters.nsForce);

@@ -120,6 +120,15 @@ struct Contacts {
 	std::vector<double>  rest;                            ///< rest distance of this side: that of the two automata, or less when they came into contact already closer [m]
 	std::vector<double>  d, twoG, friction, viscLinear, viscQuadratic, share; ///< constants of the pair; share = q_owner/(q_owner+q_other)
 	std::vector<double>  a, b, c;               ///< scratch per half-contact
+	std::vector<double>  dx, dy, r2;            ///< vector from owner to other [m] and its square, of this step
+	std::vector<double>  pushing, touch;        ///< 1 where this side pushes, where any side does; else 0
+	std::vector<double>  along, press;          ///< (x_j-x_i).(v_j-v_i) [m2/s]; pressure force over the vector [N/m2]
+	/// What a step fills anew; sized by the search.
+	void sizeScratch()
+	{
+		for (auto v : { &a, &b, &c, &dx, &dy, &r2, &pushing, &touch, &along, &press })
+			v->assign(size(), 0.);
+	}
 	std::vector<int32_t> rowOwner, rowBegin;    ///< rows: owner and first half-contact; rowBegin has one entry more
 	size_t               size() const { return owner.size(); }
 	size_t               rows() const { return rowOwner.size(); }

@@ -66,31 +66,49 @@ namespace {
 		if (contactSq)
 			for (int l = 0; l < blockSize; l++)
 				square[l] += contactSq[base + l];
-#pragma omp simd reduction(+ : plastic, couple, heated)
+		alignas(64) double trials[blockSize], zNew[blockSize];
+		double             most = 0, hottest = 0;
+#pragma omp simd reduction(max : most, hottest)
 		for (int l = 0; l < blockSize; l++) {
-			const double zo = szz[l], zn = fma(-twoG * (1. / 3.), ti[l], zo); // (9)
-			const double trial = std::sqrt(equivalentStress2<2>(square[l] * invN[l], zn));
-			const Return r     = radialReturn<kind>(yield, trial, eqps[l], kind == YieldKind::johnsonCook ? temp[l] : 0., threeG, dt);
-			factor[l]          = r.scale * J[l];
-			szz[l]             = zn * r.scale;
-			if (kind != YieldKind::elastic) eqps[l] += r.dEqps;
-			if (kind == YieldKind::johnsonCook) temp[l] = fma(yield.heatPerWork * r.scale * trial, r.dEqps, temp[l]);
-			if (heat) {
-				const double q = J[l] * r.scale * trial * r.dEqps * perRho;
-				heat[l] += q, heated += q * cell[l];
-			}
-			if (account) {
-				const double before = std::sqrt(equivalentStress2<2>(old2[l] * invN[l], zo));
-				// the stress before the step along the direction of flow: the two need not be parallel
-				const double both  = (3. * (oldNew[l] + (contactOld ? contactOld[base + l] : 0.)) * invN[l] + 1.5 * zo * zn);
-				const double along = trial > 0. ? both / trial : 0.;
-				const double pairs = sixth / invN[l]; // volume the pairs stand for: the cell, but on weighted rims
-				plastic += pairs * J[l] * 0.5 * (along + trial * r.scale) * r.dEqps;
-				// pair work that goes into volume change rather than into the stored deviatoric energy J sigma_eq^2/(6G); zero in a uniform field
-				const double vol = (coupleOld[l] + r.scale * coupleNew[l]) * invN[l] + 0.5 * (zo + szz[l]) * ti[l] * (1. / 3.);
-				couple += pairs * J[l] * (vol - (threeG > 0 ? ti[l] * before * before / (2. * threeG) : 0.));
-			}
+			zNew[l]   = fma(-twoG * (1. / 3.), ti[l], szz[l]); // (9)
+			trials[l] = std::sqrt(equivalentStress2<2>(square[l] * invN[l], zNew[l]));
+			most      = max(most, trials[l]);
+			if (kind == YieldKind::johnsonCook) hottest = max(hottest, temp[l]);
 		}
+		const auto yieldAll = [&](auto flows) {
+			double work1 = 0, work2 = 0, work3 = 0;
+#pragma omp simd reduction(+ : work1, work2, work3)
+			for (int l = 0; l < blockSize; l++) {
+				const double zo = szz[l], zn = zNew[l], trial = trials[l];
+				const Return r  = flows.value ? radialReturn<kind>(yield, trial, eqps[l], kind == YieldKind::johnsonCook ? temp[l] : 0., threeG, dt) : Return { 1., 0. };
+				factor[l]       = r.scale * J[l];
+				szz[l]          = zn * r.scale;
+				if (kind != YieldKind::elastic) eqps[l] += r.dEqps;
+				if (kind == YieldKind::johnsonCook) temp[l] = fma(yield.heatPerWork * r.scale * trial, r.dEqps, temp[l]);
+				if (heat) {
+					const double q = J[l] * r.scale * trial * r.dEqps * perRho;
+					heat[l] += q, work3 += q * cell[l];
+				}
+				if (account) {
+					const double before = std::sqrt(equivalentStress2<2>(old2[l] * invN[l], zo));
+					// the stress before the step along the direction of flow: the two need not be parallel
+					const double both  = (3. * (oldNew[l] + (contactOld ? contactOld[base + l] : 0.)) * invN[l] + 1.5 * zo * zn);
+					const double along = trial > 0. ? both / trial : 0.;
+					const double pairs = sixth / invN[l]; // volume the pairs stand for: the cell, but on weighted rims
+					work1 += pairs * J[l] * 0.5 * (along + trial * r.scale) * r.dEqps;
+					// pair work that goes into volume change rather than into the stored deviatoric energy J sigma_eq^2/(6G); zero in a uniform field
+					const double vol = (coupleOld[l] + r.scale * coupleNew[l]) * invN[l] + 0.5 * (zo + szz[l]) * ti[l] * (1. / 3.);
+					work2 += pairs * J[l] * (vol - (threeG > 0 ? ti[l] * before * before / (2. * threeG) : 0.));
+				}
+			}
+			plastic = work1, couple = work2, heated = work3;
+		};
+		// logarithms and powers are most of the cost: not where nobody reaches the yield stress of unstrained material at the highest temperature
+		if constexpr (kind == YieldKind::johnsonCook)
+			if (most <= staticYield<kind>(yield, 0., hottest).stress) yieldAll(std::false_type {});
+			else yieldAll(std::true_type {});
+		else
+			yieldAll(std::true_type {});
 		if (scaleOut)
 			for (int l = 0; l < blockSize; l++)
 				scaleOut[base + l] = factor[l];

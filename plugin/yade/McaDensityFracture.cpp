@@ -149,10 +149,10 @@ void McaDensity::filterVolumes(bool account)
 		Row&       r = rows[i];
 		const Real J = r.m->volumeRatio + change[i], ratio = J / r.m->volumeRatio, G = r.material->G;
 		if (account) {
-			Real square = 0;
+			Real pairs = 0;
 			for (const Side& s : r.link)
-				square += sqr(s.p->s[s.side]) + sqr(s.p->tau[s.side]);
-			const Real held = G > 0 ? (square / (nLinks * r.m->volumeRatio) + 0.5 * r.m->volumeRatio * sqr(r.m->stressZZ)) * mca::Lattice<2>::cell(r.d) / (2. * G) : 0.;
+				if (s.p->twoG > 0) pairs += (sqr(s.p->s[s.side]) + sqr(s.p->tau[s.side])) / (s.p->twoG * r.m->volumeRatio);
+			const Real held = G > 0 ? mca::Lattice<2>::cell(r.d) / nLinks * (pairs + r.m->volumeRatio * sqr(r.m->stressZZ) / (4. * G * r.l->invN)) : 0.;
 			coupling += (r.material->eos.mieGrueneisen ? 0. : stateEnergy(r, r.m->volumeRatio) - stateEnergy(r, J)) + held * (1. - ratio);
 		}
 		r.m->volumeRatio = J;

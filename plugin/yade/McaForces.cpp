@@ -131,16 +131,15 @@ void McaDensity::stateEnergies(Scene& scene, Real& volumetric, Real& deviatoric,
 		centre += 0.5 * m->mass * (meanVelocity(scene, b->id, *m, -0.5).squaredNorm() - m->vel.squaredNorm());
 		if (!(m->blockedDOFs & State::DOF_RZ) && m->inertia[2] > 0) centre += 0.5 * m->inertia[2] * (sqr(m->angVel[2] - 0.5 * scene.dt * scene.forces.getTorque(b->id)[2] / m->inertia[2]) - sqr(m->angVel[2]));
 		if (!(c.G > 0)) continue;
-		Real square = 0;
+		Real pairs = 0; // with the stiffness of the pair, which between unlike materials is neither's own; stresses stand times J
 		for (const auto& entry : b->intrs) {
 			const auto* p = castTo<const McaPhys>(entry.second->phys.get());
 			if (!p || p->wall) continue;
 			const int side = entry.second->getId1() == b->id ? 0 : 1;
-			square += (p->linked && p->half ? 0.5 : 1.) * (sqr(p->s[side]) + sqr(p->tau[side]));
+			if (p->twoG > 0) pairs += (p->linked && p->half ? 0.5 : 1.) * (sqr(p->s[side]) + sqr(p->tau[side])) / (p->twoG * m->volumeRatio);
 		}
-		// J sigma_eq^2/(6G) of links and szz; stresses stand times J
 		const Real share = mca::Lattice<2>::cell(2. * static_cast<Sphere*>(b->shape.get())->radius) / nLinks; // of volume, of each pair
-		deviatoric += share * (square / (2. * c.G * m->volumeRatio) + m->volumeRatio * sqr(m->stressZZ) / (4. * c.G * l.invN));
+		deviatoric += share * (pairs + m->volumeRatio * sqr(m->stressZZ) / (4. * c.G * l.invN));
 	}
 	volumetric -= heated;
 }
