@@ -69,7 +69,7 @@ void Solver::inheritState(const Solver& old)
 			const int64_t j = indexOf(O.id[old.contacts.other[c]]);
 			if (j < 0) continue;
 			contacts.owner.push_back(int32_t(i)), contacts.other.push_back(int32_t(j));
-			contacts.s.push_back(old.contacts.s[c]), contacts.tau.push_back(old.contacts.tau[c]), contacts.rest.push_back(old.contacts.rest[c]);
+			contacts.s.push_back(old.contacts.s[c]), contacts.tau.push_back(old.contacts.tau[c]), contacts.rest.push_back(old.contacts.rest[c]), contacts.twoG.push_back(old.contacts.twoG[c]);
 		}
 		if (contacts.size() == first) continue;
 		if (contacts.rowBegin.empty()) contacts.rowBegin.push_back(0);
