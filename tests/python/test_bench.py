@@ -56,6 +56,7 @@ def test_planCoversEveryCaseWithNamesOfItsOwn():
 ])
 def test_recordOfATinyRun(plugin, case, solver, n, options):
 	r = bench_process.execute(bench_plan.job(case, solver, n, **options))
+	assert isinstance(r['processor'], str) and r['processorSeconds'] > 0
 	assert RECORD - set(r) <= {'error', 'energyError', 'wall'} and not r.get('ended'), r
 	assert r['steps'] > 0 and r['stepping'] > 0 and r['memory'] > 50 and (r['automata'] > 0) == (solver != 'grid') and (r['cells'] > 0) == (solver in ('grid', 'coupled'))
 	spent = sum(v for v in r['phasesPerStep'].values()) * r['steps'] * 1e-9

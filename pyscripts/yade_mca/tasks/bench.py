@@ -7,7 +7,7 @@
 
 A record holds the job (case, solver, n, rule, factor, sleeping, account, threads, kind, width, until) and
 
-    stepping           time of all steps [s]: `timers` (YADE's, of its engines) or, on 1 thread, `processor` (processor time) when that is less because other processes ran
+    stepping           time of all steps [s]: `timers` (YADE's, of its engines) or, on 1 thread, `processorSeconds` when that is less because other processes ran
     wall               [s] from the start of the process to the end of the run; start: of YADE and the plugin; built: of the scene
     steps, automata, cells, simulated [s], error, against, energyError
     automataNs, cellNs ns per automaton and per cell and step; interfaceNs, phasesPerStep: ns per step

@@ -56,8 +56,9 @@ def options(records):
 	for r in records:
 		b = base.get((r['case'], r['solver'], r['n'], r.get('width')))
 		if r['case'] == 'law' or not variants(r) or not b: continue
+		clock = 'stepping' if r['threads'] == 1 else 'timers'
 		if r.get('ended'): rows.append((TITLES[r['case']], r['solver'], '%d' % r['n'], ', '.join(variants(r)), '', '', 'ended: ' + r['ended'].split('Remedy')[0][:100].replace('*', '').replace('`', '')))
-		else: rows.append((TITLES[r['case']], r['solver'], '%d' % r['n'], ', '.join(variants(r)), number(r['stepping'] / b['stepping'], 2), '%.2g / %.2g' % (r['error'], b['error']) if r.get('error') and b.get('error') else '', ''))
+		else: rows.append((TITLES[r['case']], r['solver'], '%d' % r['n'], ', '.join(variants(r)), number(r[clock] / b[clock], 2), '%.2g / %.2g' % (r['error'], b['error']) if r.get('error') and b.get('error') else '', ''))
 	return listTable('One option at a time', ('case', 'solver', 'N', 'option', 'time over the default run\'s', 'error / that of the default run', ''), rows) + madeBy(records)
 
 

@@ -143,7 +143,7 @@ def part(a, b, count):
 	stepping = withoutOthers(timers, processor)
 	spent = {k: v * stepping / timers for k, v in spent.items()}
 	ns = sum(spent.values())
-	return dict(steps=steps, stepping=stepping, timers=timers, processor=processor, processorShare=processor / (b[3] - a[3]), automataNs=ns / count, phasesPerStep=spent,
+	return dict(steps=steps, stepping=stepping, timers=timers, processorSeconds=processor, processorShare=processor / (b[3] - a[3]), automataNs=ns / count, phasesPerStep=spent,
 	            phases={k: v / count for k, v in spent.items()})
 
 

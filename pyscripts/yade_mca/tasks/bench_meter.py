@@ -87,7 +87,7 @@ class Meter:
 		ofAutomata = sum(v for k, v in spent.items() if k not in GRID + INTERFACE)
 		perStep = lambda ns, n: ns / n / steps if n and steps else None
 		return dict(
-		        automata=automata, cells=cells, steps=steps, simulated=self.O.time, stepping=stepping, timers=timers, processor=cpu, processorShare=cpu / wall if wall else None,
+		        automata=automata, cells=cells, steps=steps, simulated=self.O.time, stepping=stepping, timers=timers, processorSeconds=cpu, processorShare=cpu / wall if wall else None,
 		        automataNs=perStep(ofAutomata, automata), cellNs=perStep(ofGrid, cells), interfaceNs=perStep(spent.get('interface', 0.), 1) if self.couplers else None,
 		        phases={k: perStep(v, cells if k in GRID and cells else automata or cells) for k, v in spent.items()}, phasesPerStep={k: perStep(v, 1) for k, v in spent.items()},
 		        awake=self.awake(), runs=self.runs
