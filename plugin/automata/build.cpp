@@ -127,6 +127,8 @@ void Solver::makeLinks(const Solver* old)
 	if (old) inheritLinks(*old);
 	auto              known = [&](size_t i) { return old && old->indexOf(S.id[i]) >= 0; };
 	std::vector<Near> near(n);
+	int64_t           crowded = -1; // told after all overlaps, which may be its cause
+	int               most = 0;
 	for (size_t i = 0; i < n; i++) {
 		if (S.id[i] < 0) continue;
 		int found = 0;
@@ -143,13 +145,14 @@ void Solver::makeLinks(const Solver* old)
 					found++;
 				}
 			}
-		if (found > nLinks) {
-			std::ostringstream s;
-			s << "automaton " << S.id[i] << " at (" << S.x[i] << ", " << S.y[i] << ") m has " << found << " neighbours within " << options.linkFactor
-			  << " diameters; the hexagonal packing has at most 6. The spacing of the packing does not match the diameter " << S.diameter[i] << " m: build the packing with this spacing.";
-			throw Error(s.str());
-		}
-		near[i].count = found;
+		if (found > nLinks && crowded < 0) crowded = int64_t(i), most = found;
+		near[i].count = std::min(found, nLinks);
+	}
+	if (crowded >= 0) {
+		std::ostringstream s;
+		s << "automaton " << S.id[crowded] << " at (" << S.x[crowded] << ", " << S.y[crowded] << ") m has " << most << " neighbours within " << options.linkFactor
+		  << " diameters; the hexagonal packing has at most 6. The spacing of the packing does not match the diameter " << S.diameter[crowded] << " m: build the packing with this spacing.";
+		throw Error(s.str());
 	}
 	placeLinks(near, old);
 	for (size_t i = 0; i < n; i++)

@@ -133,7 +133,7 @@ namespace {
 			// how much stiffer than in the perfect packing: the volume by the sum of (dJ/dx_k)^2, the pair law by the closest link
 			const double exx = intact ? 3. : spanX[l], exy = intact ? 0. : spanXY[l], eyy = intact ? 3. : spanY[l];
 			const double spread = exx * (Fyy * Fyy + Fyx * Fyx) - 2. * exy * (Fyy * Fxy + Fyx * Fxx) + eyy * (Fxy * Fxy + Fxx * Fxx);
-			const double one = max(off * off * spread * scale * (1. / 6.), 1.), bulk = min(one * one, 4.); // covers edges and corners of free surfaces up to nu = 0.49, measured
+			const double one = max(off * off * spread * scale * (1. / 6.), 1.), bulk = max(min(one * one, 4.), one); // covers edges and corners of free surfaces up to nu = 0.49, measured; beyond 4 what is torn and sheared
 			stiffest          = max(stiffest, (tangent(eos, eps) * bulk + G43 * max(0.5 * d2 / near[l], 1.)) * invRho / Jn);
 			closing  = max(closing, -dTheta[l]);
 			widest   = max(widest, Jn);

@@ -90,7 +90,7 @@ void McaDensity::volume(Row& r, bool withContacts)
 		l.txx = a * Fyy, l.txy = -a * Fyx, l.tyx = -a * Fxy, l.tyy = a * Fxx;
 		// stiffer than in the perfect packing: the volume by the sum of (dJ/dx_k)^2, the pair law by the closest link
 		const Real spread = exx * (sqr(Fyy) + sqr(Fyx)) - 2. * exy * (Fyy * Fxy + Fyx * Fxx) + eyy * (sqr(Fxy) + sqr(Fxx));
-		const Real one = std::max(l.offset * l.offset * spread * perArea * (1. / 6.), 1.), bulk = std::min(one * one, 4.);
+		const Real one = std::max(l.offset * l.offset * spread * perArea * (1. / 6.), 1.), bulk = std::max(std::min(one * one, 4.), one);
 		stiff          = (mca::tangent(eos, eps) * bulk + G43 * std::max(0.5 * d2 / r2min, 1.)) / (eos.rho0 * Jn);
 		if (withContacts) { // contacts have a volume of their own
 			const Real Jc = 1. / (1. + l.contactSum * (1. / nLinks)), ec = Jc - 1.;

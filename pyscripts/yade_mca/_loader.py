@@ -17,7 +17,7 @@ REBUILD = 'delete the folder build and run pyscripts/setup, or reinstall the pac
 def setThreadPolicy():
 	"""Threads of OpenMP that wait sleep instead of spinning, unless the user has said otherwise; without effect when YADE was loaded before."""
 	if 'yade' not in sys.modules:
-		os.environ.setdefault('OMP_WAIT_POLICY', 'passive')
+		if os.environ.setdefault('OMP_WAIT_POLICY', 'passive') == 'passive': os.environ.setdefault('GOMP_SPINCOUNT', '1000')
 
 
 def refuse(what, remedy):

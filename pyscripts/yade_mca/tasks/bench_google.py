@@ -28,7 +28,7 @@ def run(quick, where=None):
 			continue
 		command = [str(path), '--benchmark_format=json', '--benchmark_filter=' + (short if quick else FULL[program])]
 		try:
-			done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=LIMIT, env=dict(os.environ, OMP_WAIT_POLICY='passive'))
+			done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=LIMIT, env=dict(os.environ, OMP_WAIT_POLICY='passive', GOMP_SPINCOUNT='1000'))
 			found[program] = [row(b) for b in json.loads(done.stdout)['benchmarks']]
 		except (subprocess.TimeoutExpired, ValueError, KeyError) as e:
 			remarks.append('%s failed: %s' % (program, ' '.join(str(e).split())[:200]))

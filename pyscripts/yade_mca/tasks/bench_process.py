@@ -50,7 +50,7 @@ def execute(job):
 
 def measured(job):
 	"""Runs a job in a new process and returns its record; a process that broke gives a record with `failed`."""
-	environment = dict(os.environ, OMP_NUM_THREADS=str(job['threads']), OMP_WAIT_POLICY='passive')
+	environment = dict(os.environ, OMP_NUM_THREADS=str(job['threads']), OMP_WAIT_POLICY='passive', GOMP_SPINCOUNT='1000')
 	with tempfile.TemporaryDirectory() as folder:
 		path = os.path.join(folder, 'record.json')
 		try:

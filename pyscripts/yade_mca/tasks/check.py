@@ -32,7 +32,7 @@ def names():
 def runExample(name, line=2, timeout=600):
 	"""Runs one example with a line of its table, as yade-batch does: (status, output, [(name, value, unit, expected, off, allowed)])."""
 	folder = first(FOLDERS)
-	environment = dict(os.environ, YADE_BATCH='%s:%d' % (os.path.join(folder, name + '.table'), line), OMP_WAIT_POLICY='passive', MPLBACKEND='Agg')
+	environment = dict(os.environ, YADE_BATCH='%s:%d' % (os.path.join(folder, name + '.table'), line), OMP_WAIT_POLICY='passive', GOMP_SPINCOUNT='1000', MPLBACKEND='Agg')
 	command = [sys.executable, first(LAUNCHERS), '-n', '-x', os.path.join(folder, name + '.py')]
 	done = subprocess.run(command, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=timeout)
 	found = [(n, float(v), unit, float(e), float(off), float(limit)) for n, v, unit, e, off, limit in LINE.findall(done.stdout)]
