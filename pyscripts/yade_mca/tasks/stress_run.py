@@ -14,7 +14,7 @@ from . import stress_impact, stress_lattice, stress_limit, stress_long, stress_m
 from .stress_judge import FAILED, Outcome, judge
 
 GROUPS = (stress_step, stress_limit, stress_impact, stress_material, stress_lattice, stress_long, stress_random)
-PATIENCE = 600.  #: longest time of one case [s]
+PATIENCE = 3600.  #: longest time of one case [s]
 
 
 def allCases(quick, seed):
