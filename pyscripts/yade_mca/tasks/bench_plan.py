@@ -80,7 +80,7 @@ def waves():
 
 
 def bodies():
-	jobs = series('taylorBar', 'automata', (8, 12, 18, 27, 40, 60)) + rulesAndSteps('taylorBar', 'automata', 18, (0.1, 0.2, 0.7, 1.))
+	jobs = series('taylorBar', 'automata', (8, 12, 18, 27, 40)) + rulesAndSteps('taylorBar', 'automata', 18, (0.1, 0.2, 0.7, 1.))
 	jobs += [job('taylorBar', 'automata', 27, **o) for o in (dict(threads=2), dict(sleeping=False), dict(account=True))]
 	for w in WIDTHS:
 		finest = (96, ) if w == 120 else ()
