@@ -2,6 +2,7 @@
 """Tables of the page on performance (reStructuredText) from bench.json; nothing in them is typed by hand."""
 import json
 import os
+import re
 
 from . import bench_results as results
 from .bench_plan import ERRORS, RESOLUTION, variants
@@ -33,7 +34,17 @@ def law(records):
 		lines.append((road, KINDS[kind] if road in ('McaEngine', 'Law2') else 'its own', '%d' % n, number(one and one[0], 0), number(two and two[0], 0), number(speed.get((road, kind, n)), 2),
 		              number(one and one[1], 1), number(two and two[1], 1)))
 	head = ('law', 'material', 'automata', 'ns, 1 thread', 'ns, 2 threads', '1 over 2 threads', 'over McaEngine, 1 thread', '2 threads')
-	return listTable('Nanoseconds per automaton and step', head, lines) + madeBy([r for r in records if r['case'] == 'law'])
+	return listTable('Nanoseconds per automaton and step', head, lines) + targets(records) + madeBy([r for r in records if r['case'] == 'law'])
+
+
+def targets(records):
+	"""What was aimed at and what is reached, plastic material, as sentences."""
+	law, t = [r for r in results.peers(records) if r[1] == 'plastic'], results.TARGETS
+	each = lambda rows, form: ', '.join((form + ' at %d') % (v, n) for v, n in rows) or 'not measured'
+	return ('\nCpmMat over McaEngine on one thread: %s (aim: at least %g). McaEngine on one thread: %s ns (aim: at most %g). Two threads over one: %s (aim: at least %g).\n' % (
+	        each([(r[5], r[0]) for r in law if r[3] == 'CpmMat' and r[2] == 1 and r[5]], '%.1f'), t['peer'],
+	        each([(r[4], r[0]) for r in law if r[3] == 'McaEngine' and r[2] == 1], '%.0f'), t['nanoseconds'],
+	        each([(ratio, int(name.split('/N')[1])) for name, ratio, _ in results.speedUps(records) if re.fullmatch(r'law/McaEngine/N\d+', name)], '%.2f'), t['threads']))
 
 
 def fronts(records):
@@ -90,7 +101,7 @@ def kernels(data):
 		for r in of:
 			values = {k: v for k, v in r.items() if k not in ('name', 'time')}
 			rows.append((program, r['name'].replace('<', ' ').replace('>', ' '), ', '.join('%s %.3g' % (k, v) for k, v in values.items() if isinstance(v, (int, float)))))
-	return listTable('Google Benchmark', ('program', 'case', 'counters'), rows) if rows else 'The programs were not built.\n'
+	return listTable('Google Benchmark', ('program', 'case', 'counters'), rows) if rows else 'The programs were not run for these results.\n'
 
 
 def what():
