@@ -1,28 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Set-up: checks, order in space, blocks, links.
 #include "solver.hpp"
+#include "space_order.hpp"
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <sstream>
 #include <unordered_map>
 
 namespace mca::automata {
 namespace {
-	/// Sort key: strips of 16 diameters, columns of one diameter inside a strip: neighbours stay within a few dozen entries.
-	struct Key {
-		int32_t species;
-		int64_t strip, column;
-		double  y;
-		int32_t id;
-		bool    operator<(const Key& o) const
-		{
-			if (species != o.species) return species < o.species;
-			if (strip != o.strip) return strip < o.strip;
-			if (column != o.column) return column < o.column;
-			return y != o.y ? y < o.y : id < o.id;
-		}
-	};
 	void check(const Automaton& a, size_t nMaterials)
 	{
 		auto refuse = [&](const std::string& what) { throw Error("automaton " + std::to_string(a.id) + ": " + what); };
@@ -47,28 +33,25 @@ namespace {
 void Solver::makeBlocks(const std::vector<Automaton>& in)
 {
 	Store& S = store;
-	std::vector<Key> keys;
+	std::vector<SpaceKey> keys;
 	keys.reserve(in.size());
 	for (auto& a : in) {
 		int sp = -1;
 		for (size_t q = 0; q < S.species.size(); q++)
 			if (S.species[q].material == a.material && S.species[q].d == a.diameter) sp = int(q);
 		if (sp < 0) sp = int(S.species.size()), S.species.push_back({ a.material, a.diameter });
-		const double d = a.diameter;
-		keys.push_back({ sp, int64_t(std::floor(a.y / (16. * d))), int64_t(std::floor(a.x / d)), a.y, a.id });
+		keys.emplace_back(sp, a.x, a.y, a.diameter, a.id, int32_t(keys.size()));
 	}
-	std::vector<int32_t> order(in.size());
-	std::iota(order.begin(), order.end(), 0);
-	std::sort(order.begin(), order.end(), [&](int32_t a, int32_t b) { return keys[a] < keys[b]; });
+	std::sort(keys.begin(), keys.end());
 	std::vector<int64_t> source; // entry of the input for each lane, -1 = padding
-	for (int32_t q : order) {
-		const int32_t sp = keys[q].species;
+	for (const SpaceKey& key : keys) {
+		const int32_t sp = key.species;
 		if (S.blocks.empty() || S.blocks.back().species != sp || S.blocks.back().count == blockSize) {
 			source.resize(S.blocks.size() * blockSize, -1);
 			S.blocks.emplace_back();
 			S.blocks.back().species = sp;
 		}
-		source.push_back(q);
+		source.push_back(key.place);
 		S.blocks.back().count++;
 	}
 	source.resize(S.blocks.size() * blockSize, -1);

@@ -144,7 +144,7 @@ private:
 	struct {
 		std::vector<double> volX, volY, visX, visY; ///< volumetric and viscous share of the forces of links
 	} accountForce;
-	std::vector<double>      curvature, change; ///< scratch of filterVolumes()
+	std::vector<double>      takesPart, curvature, change; ///< scratch of filterVolumes()
 	double                   filterTime = 0;    ///< since its last call [s]
 	bool                     flows = false;     ///< some material yields
 	int64_t                  lastSort = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The whole state as bytes, and sorting of the arrays in space.
 #include "solver.hpp"
+#include "space_order.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -109,26 +110,17 @@ void Solver::sortInSpace()
 	Store&       S = store;
 	const size_t n = S.size();
 	lastSort       = counters.steps;
-	struct Key {
-		int32_t species;
-		int64_t strip, column;
-		double  y;
-		int32_t id, old;
-	};
-	std::vector<Key> keys;
+	std::vector<SpaceKey> keys;
 	for (size_t i = 0; i < n; i++)
-		if (S.id[i] >= 0) {
-			const double d = S.diameter[i];
-			keys.push_back({ S.speciesOf(i), int64_t(std::floor(S.y[i] / (16. * d))), int64_t(std::floor(S.x[i] / d)), S.y[i], S.id[i], int32_t(i) });
-		}
-	std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) { return std::tie(a.species, a.strip, a.column, a.y, a.id) < std::tie(b.species, b.strip, b.column, b.y, b.id); });
+		if (S.id[i] >= 0) keys.emplace_back(S.speciesOf(i), S.x[i], S.y[i], S.diameter[i], S.id[i], int32_t(i));
+	std::sort(keys.begin(), keys.end());
 	// the same blocks with the same counts: only lanes change hands, padding stays where it is
 	std::vector<int32_t> source(n), target(n);
 	size_t               q = 0;
 	for (size_t b = 0; b < S.blocks.size(); b++)
 		for (int l = 0; l < blockSize; l++) {
 			const size_t i = b * blockSize + l;
-			source[i]      = l < S.blocks[b].count ? keys[q++].old : int32_t(i);
+			source[i]      = l < S.blocks[b].count ? keys[q++].place : int32_t(i);
 		}
 	for (size_t i = 0; i < n; i++)
 		target[source[i]] = int32_t(i);

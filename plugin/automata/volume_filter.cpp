@@ -3,42 +3,66 @@
 #include "solver.hpp"
 
 namespace mca::automata {
+namespace {
+	/// Second differences of J of a block, zero for who takes no part; returns whether anybody does.
+	bool curvatures(const Store& S, size_t b, double* takesPart, double* curvature)
+	{
+		const size_t   base = b * blockSize;
+		const double * J = S.J.data(), *eqps = S.eqps.data() + base, *jOff = S.jOff.data() + base;
+		const int32_t *flags = S.flags.data() + base, *nb = S.neighbour.data() + b * nLinks * blockSize;
+		double         any = 0;
+#pragma omp simd reduction(max : any)
+		for (int l = 0; l < blockSize; l++) {
+			takesPart[base + l] = exchangesVolume(eqps[l], flags[l], jOff[l]) ? 1. : 0.;
+			any                 = max(any, takesPart[base + l]);
+		}
+		for (int l = 0; l < blockSize; l++)
+			curvature[base + l] = 0.;
+		if (!(any > 0.)) return false;
+		for (int k = 0; k < nLinks; k++)
+#pragma omp simd
+			for (int l = 0; l < blockSize; l++)
+				curvature[base + l] += takesPart[base + l] * (J[nb[k * blockSize + l]] - J[base + l]);
+		return true;
+	}
+}
 
 void Solver::filterVolumes()
 {
 	Store&     S = store;
 	const long n = long(awake.size());
-	curvature.resize(S.size(), 0.);
-	change.resize(S.size(), 0.);
-	const auto exchanges = [&](size_t i) { return S.id[i] >= 0 && exchangesVolume(S.eqps[i], S.flags[i], S.jOff[i]); };
-	bool       any       = false;
+	takesPart.assign(S.size(), 0.); // who sleeps takes no part
+	for (auto v : { &curvature, &change })
+		v->resize(S.size(), 0.);
+	bool any = false;
 #pragma omp parallel for schedule(static) reduction(|| : any) if (n >= 16)
 	for (long q = 0; q < n; q++)
-		for (int l = 0; l < blockSize; l++) {
-			const size_t i   = size_t(awake[q]) * blockSize + l;
-			double       sum = 0;
-			if (exchanges(i)) {
-				for (int k = 0; k < nLinks; k++)
-					sum += S.J[S.neighbour[linkSlot(i, k)]] - S.J[i];
-				any = true;
-			}
-			curvature[i] = sum;
-		}
+		any = curvatures(S, size_t(awake[q]), takesPart.data(), curvature.data()) || any;
 	if (any) {
 #pragma omp parallel for schedule(static) if (n >= 16)
 		for (long q = 0; q < n; q++) {
-			const Block& B     = S.blocks[awake[q]];
-			const double share = volumeExchange(options.volumeFilter, S.materialOf(B).eos.c0, filterTime, S.species[B.species].d);
-			for (int l = 0; l < blockSize; l++) {
-				const size_t i   = size_t(awake[q]) * blockSize + l;
-				double       sum = 0;
-				if (exchanges(i))
-					for (int k = 0; k < nLinks; k++) {
-						const size_t j = S.neighbour[linkSlot(i, k)];
-						if (exchanges(j) && S.speciesOf(j) == B.species && S.blocks[j / blockSize].awake) sum += curvature[i] - curvature[j];
+			const size_t   b = size_t(awake[q]), base = b * blockSize;
+			const Block&   B = S.blocks[b];
+			const double   share = volumeExchange(options.volumeFilter, S.materialOf(B).eos.c0, filterTime, S.species[B.species].d);
+			const int32_t* nb    = S.neighbour.data() + b * nLinks * blockSize;
+			double*        to    = change.data() + base;
+			const double * part = takesPart.data(), *curve = curvature.data();
+			for (int l = 0; l < blockSize; l++)
+				to[l] = 0.;
+			for (int k = 0; k < nLinks; k++)
+				if (B.mixed)
+					for (int l = 0; l < blockSize; l++) {
+						const int32_t j = nb[k * blockSize + l];
+						if (S.speciesOf(j) == B.species) to[l] += part[j] * (curve[base + l] - curve[j]);
 					}
-				change[i] = share * sum;
-			}
+				else
+#pragma omp simd
+					for (int l = 0; l < blockSize; l++) {
+						const int32_t j = nb[k * blockSize + l];
+						to[l] += part[j] * (curve[base + l] - curve[j]);
+					}
+			for (int l = 0; l < blockSize; l++)
+				to[l] *= share * part[base + l];
 		}
 		for (int32_t b : awake)
 			for (size_t i = size_t(b) * blockSize; i < size_t(b + 1) * blockSize; i++)
