@@ -96,15 +96,16 @@ void contactFriction(const Store& S, Contacts& C, const ContactScratch& in, Cont
 		const double area = 0.5 * Lattice<2>::width(d) * d, perG = C.twoG[c] > 0. ? 0.5 * area / C.twoG[c] / S.J[i] : 0.;
 		const double so = C.b[c] * S.J[i], to = C.c[c] * S.J[i], held = perG * fma(so, so, to * to);
 		const bool   on = C.touch[c] > 0.;
-		// (so + s)(st - s) in all; the plastic work holds (so + s0)(st - s0) of it, with the owner's own stiffness
+		C.a[c] = on ? perG * ((so + s) * (s0 - s) + (to + t) * (t0 - t)) : held;
+		// the radial return took (so + s)(st - s0) with the stiffness of the pair; booked as plastic with the links: (so + s0)(st - s0) with the owner's own
 		const double G = S.materials[S.species[S.speciesOf(i)].material].G, perOwn = G > 0. ? 0.25 * area / G / S.J[i] : 0.;
-		C.a[c] = on ? perG * ((so + s) * (st - s) + (to + t) * (tt - t)) - perOwn * ((so + s0) * (st - s0) + (to + t0) * (tt - t0)) : held;
+		C.c[c] = on ? (perG * (so + s) - perOwn * (so + s0)) * (st - s0) + (perG * (to + t) - perOwn * (to + t0)) * (tt - t0) : 0.;
 		// as for links: pair work that goes into volume change
 		C.b[c] = on ? area * 0.5 * (so + s) * (S.dTheta[i] + S.dTheta[C.other[c]]) * (1. / 6.) - S.dTheta[i] * held : 0.;
 	}
 	if (work)
 		for (long c = 0; c < n; c++)
-			work->friction += C.a[c], work->coupling += C.b[c];
+			work->friction += C.a[c], work->coupling += C.b[c], work->plastic += C.c[c];
 }
 
 // (6) of both sides, each with its own rest distance.

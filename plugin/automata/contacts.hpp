@@ -23,7 +23,7 @@ struct ContactScratch {
 };
 
 struct ContactWork {
-	double friction = 0, coupling = 0;
+	double friction = 0, coupling = 0, plastic = 0;
 };
 
 /// New list of contacts from all exposed automata closer than (1 + skin) times their rest distance; stresses of pairs that go on are kept.

@@ -147,7 +147,7 @@ void Solver::computeForces()
 	if (account) {
 		for (int32_t b : awake)
 			sums.plastic += works[b].plastic, sums.coupling += works[b].coupling, sums.heated += works[b].heated;
-		sums.friction += cw.friction, sums.coupling += cw.coupling;
+		sums.friction += cw.friction, sums.coupling += cw.coupling, sums.plastic += cw.plastic;
 	}
 	// 2.8: all blocks, the sleeping ones with their state of rest
 	double limit = 1e300, pressed = 0; // stiffest of what meets something else [Pa]: its pressure moves lighter neighbours, too, from one side

@@ -181,9 +181,10 @@ void McaDensity::stress(Row& r)
 		const Real area = 0.5 * Lattice<2>::width(p.d) * p.d, perG = p.twoG > 0 ? 0.5 * area / p.twoG / J : 0.;
 		const Real so = heldBefore[size_t(c - r.firstContact)][0] * J, to = heldBefore[size_t(c - r.firstContact)][1] * J, held = perG * fma(so, so, to * to);
 		const bool on = p.touching(r2);
-		// (so + sn)(st - sn) in all; the plastic work holds (so + s0)(st - s0) of it, with the owner's own stiffness
+		r.friction += on ? perG * ((so + sn) * (s0 - sn) + (to + tn) * (t0 - tn)) : held;
+		// the radial return took (so + sn)(st - s0) with the stiffness of the pair; booked as plastic with the links: (so + s0)(st - s0) with the owner's own
 		const Real perOwn = material.G > 0 ? 0.25 * area / material.G / J : 0.;
-		r.friction += on ? perG * ((so + sn) * (st - sn) + (to + tn) * (tt - tn)) - perOwn * ((so + s0) * (st - s0) + (to + t0) * (tt - t0)) : held;
+		if (on) r.plastic += (perG * (so + sn) - perOwn * (so + s0)) * (st - s0) + (perG * (to + tn) - perOwn * (to + t0)) * (tt - t0);
 		if (on) r.coupling += area * 0.5 * (so + sn) * (l.dTheta + o.l->dTheta) * (1. / 6.) - l.dTheta * held;
 	}
 	const Real eq2     = fma(3. * sqr(back.scale), square * l.invN, 1.5 * sqr(m.stressZZ));
