@@ -54,39 +54,54 @@ bool Solver::breaking() const
 
 void Solver::breakLinks()
 {
-	Store&               S = store;
-	std::vector<int32_t> touched;
+	Store&                                   S = store;
+	std::vector<std::pair<int32_t, int32_t>> pairs; // (automaton, link)
+	std::vector<int32_t>                     touched;
 	eachBreaking([&](size_t i, int k) {
-		const size_t j = S.neighbour[linkSlot(i, k)];
-		S.flags[i] &= ~(1 << k), S.flags[j] &= ~(1 << ((k + 3) % nLinks));
-		S.flags[i] |= exposedBit, S.flags[j] |= exposedBit;
-		S.blocks[i / blockSize].intact = S.blocks[j / blockSize].intact = false;
-		touched.push_back(int32_t(i)), touched.push_back(int32_t(j));
-		counters.brokenLinks++;
+		pairs.push_back({ int32_t(i), k });
+		touched.push_back(int32_t(i)), touched.push_back(S.neighbour[linkSlot(i, k)]);
 		return false;
 	});
 	std::sort(touched.begin(), touched.end());
 	touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+	// the volume at the present positions, as all links measure it: the work of the last move must not be lost
+	std::vector<double> J;
 	for (int32_t i : touched)
-		if (options.volumeRule == VolumeRule::affine) keepVolume(i);
-		else keepSum(i);
+		J.push_back(S.jOff[i] > 0. ? S.jOff[i] * linkDeterminant(i) + S.rest[i] : S.J[i]);
+	for (auto [i, k] : pairs) {
+		const size_t j = S.neighbour[linkSlot(i, k)];
+		if (!((S.flags[i] >> k) & 1)) continue; // seen from the other side before
+		S.flags[i] &= ~(1 << k), S.flags[j] &= ~(1 << ((k + 3) % nLinks));
+		S.flags[i] |= exposedBit, S.flags[j] |= exposedBit;
+		S.blocks[i / blockSize].intact = S.blocks[j / blockSize].intact = false;
+		counters.brokenLinks++;
+	}
+	for (size_t q = 0; q < touched.size(); q++)
+		if (options.volumeRule == VolumeRule::affine) keepVolume(touched[q], J[q]);
+		else keepSum(touched[q]);
 }
 
-// The remaining links measure the same homogeneous deformation: only the factor in front of det F is set anew, so that J goes on.
-void Solver::keepVolume(size_t i)
+double Solver::linkDeterminant(size_t i) const
 {
-	Store&       S = store;
-	if (S.jOff[i] == 0.) return;
-	double Fxx = 0, Fxy = 0, Fyx = 0, Fyy = 0;
+	const Store& S = store;
+	double       Fxx = 0, Fxy = 0, Fyx = 0, Fyy = 0;
 	for (int k = 0; k < nLinks; k++)
 		if ((S.flags[i] >> k) & 1) {
 			const int32_t j  = S.neighbour[linkSlot(i, k)];
 			const double  dx = S.x[j] - S.x[i], dy = S.y[j] - S.y[i];
 			Fxx += linkX[k] * dx, Fyx += linkX[k] * dy, Fxy += linkY[k] * dx, Fyy += linkY[k] * dy;
 		}
-	const double det = (Fxx * Fyy - Fxy * Fyx) / (9. * sqr(S.diameter[i]));
-	S.jOff[i] = det > minVolume ? S.J[i] / det : 0.;
-	if (S.jOff[i] == 0.) unsettled.push_back(int32_t(i));
+	return (Fxx * Fyy - Fxy * Fyx) / (9. * sqr(S.diameter[i]));
+}
+
+// The remaining links measure the same homogeneous deformation: only the factor in front of det F is set anew, so that J goes on.
+void Solver::keepVolume(size_t i, double J)
+{
+	Store& S = store;
+	if (S.jOff[i] == 0.) return;
+	const double det = linkDeterminant(i);
+	S.jOff[i] = det > minVolume && J > 0. ? (J - S.rest[i]) / det : 0.;
+	if (S.jOff[i] == 0.) unsettled.push_back({ int32_t(i), J > 0. ? J : S.J[i] });
 }
 
 // The rules that add up distances: the sum at rest takes over what the broken links held.
@@ -105,7 +120,7 @@ void Solver::keepSum(size_t i)
 	S.rest[i]         = sum + contact - mean / S.invN[i];
 	if (S.flags[i] & linkBits) return;
 	S.rest[i] = 0.;
-	unsettled.push_back(int32_t(i));
+	unsettled.push_back({ int32_t(i), S.J[i] });
 }
 
 // An automaton without links has its volume from its contacts alone. Under pressure their rest distances are set so that the pressure goes on;
@@ -114,7 +129,9 @@ void Solver::settleVolumes()
 {
 	Store&     S    = store;
 	const bool mean = options.volumeRule == VolumeRule::meanDistance, affine = options.volumeRule == VolumeRule::affine;
-	for (int32_t i : unsettled) {
+	for (const auto& entry : unsettled) {
+		const int32_t i   = entry.first;
+		const double  J   = entry.second;
 		const auto    row = std::lower_bound(contacts.rowOwner.begin(), contacts.rowOwner.end(), i);
 		const size_t  r   = size_t(row - contacts.rowOwner.begin());
 		const bool    any = row != contacts.rowOwner.end() && *row == i;
@@ -129,7 +146,7 @@ void Solver::settleVolumes()
 			n += near(c);
 			if (affine && pushes(contacts, c, r2)) sum += volumeTerm<VolumeRule::inversePower, 2>(contacts.rest[c], r2);
 		}
-		const double J = S.J[i], Jc = 1. / (1. + sum / nLinks);
+		const double Jc = 1. / (1. + sum / nLinks);
 		const bool   holds = n >= 3 && J < Jc;
 		const double need = mean ? (std::sqrt(J) - 1.) / (n * S.invN[i]) : (1. / J - 1.) / (n * S.invN[i]);
 		if (holds || !affine)
@@ -143,9 +160,9 @@ void Solver::settleVolumes()
 		if (options.account && !holds && !heat) sums.fracture += stateEnergy(i, J);
 		if (holds) continue;
 		for (int k = 0; k < nLinks; k++) // stresses go on
-			S.s[linkSlot(i, k)] *= Jc / J, S.tau[linkSlot(i, k)] *= Jc / J;
+			S.s[linkSlot(i, k)] *= Jc / S.J[i], S.tau[linkSlot(i, k)] *= Jc / S.J[i];
 		for (size_t c = first; c < last; c++)
-			contacts.s[c] *= Jc / J, contacts.tau[c] *= Jc / J;
+			contacts.s[c] *= Jc / S.J[i], contacts.tau[c] *= Jc / S.J[i];
 		S.J[i] = Jc;
 	}
 	unsettled.clear();

@@ -49,7 +49,7 @@ void Solver::inheritState(const Solver& old)
 		if (same) continue;
 		// the volume goes on from where it was (the change over the last step is lost: J was taken before the last move)
 		if (options.volumeRule == VolumeRule::affine && S.jOff[i] == 0.) S.jOff[i] = 1.;
-		if (options.volumeRule == VolumeRule::affine) keepVolume(i);
+		if (options.volumeRule == VolumeRule::affine) keepVolume(i, S.J[i]);
 		else keepSum(i);
 	}
 	for (int32_t o : old.tied) { // tied ones keep their places in the order of tie()

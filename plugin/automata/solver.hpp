@@ -123,7 +123,8 @@ private:
 	void   wakeAround(size_t block);
 	template <class F> void eachBreaking(F&& f) const; ///< f(automaton, link) for pairs that fulfil a criterion, until it returns true
 	bool   breaking() const;
-	void   keepVolume(size_t i);
+	double linkDeterminant(size_t i) const;
+	void   keepVolume(size_t i, double J);
 	void   keepSum(size_t i);
 	void   breakLinks();
 	void   settleVolumes();
@@ -148,7 +149,7 @@ private:
 	double                   filterTime = 0;    ///< since its last call [s]
 	bool                     flows = false;     ///< some material yields
 	int64_t                  lastSort = 0;
-	std::vector<int32_t>     unsettled; ///< lost its links in the present search: contacts must take over its volume
+	std::vector<std::pair<int32_t, double>> unsettled; ///< lost its links in the present search, with the volume that contacts must take over
 	std::vector<double>      searchX, searchY; ///< positions of exposed automata at the last search
 	std::vector<int32_t>     exposed;
 	std::vector<int32_t>     adjacentBegin, adjacent; ///< blocks next to a block by links

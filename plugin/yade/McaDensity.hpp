@@ -28,7 +28,7 @@ public:
 		"first step; bodies added later meet as contacts. O.dt is checked against the largest stable step, or set by :yref:`McaTimeStepper`.",
 		((string, volumeRule, "affine", , "'affine', 'inversePower' or 'meanDistance', see McaEngine"))
 		((Real, linkFactor, 1.2, , "bodies closer than this many diameters are linked at the start [-]"))
-		((Real, volumeFilter, 0.1, , "see McaEngine"))
+		((Real, volumeFilter, 0.1, , "rate at which stripes of volume fade in flowing material, in c0/d [-]; see McaEngine"))
 		((Real, filterTime, 0, Attr::hidden, "since the last exchange of volume [s]"))
 		((int, seed, 1, , "seed of the scattered strengths"))
 		((long, steps, 0, Attr::readonly, "steps done"))
@@ -82,7 +82,7 @@ private:
 	vector<Row>                rows;          ///< automata, ascending ids
 	vector<int>                place;         ///< of body ids in rows, or -1
 	vector<Side>               contacts;
-	vector<int>                unsettled;
+	vector<std::pair<int, Real>> unsettled;
 	vector<mca::Material>      materials;
 	vector<const McaMat*>      known;
 	mca::VolumeRule            rule() const;
@@ -93,7 +93,8 @@ private:
 	void                       findContacts(Scene*);
 	bool                       breaks(const Row&, int k) const;
 	void                       breakLinks();
-	void                       keepVolume(int i);
+	Real                       linkDeterminant(const Row&) const;
+	void                       keepVolume(int i, Real J);
 	void                       settleVolumes(bool account);
 	Real                       distance(const Row&, const Side&) const;
 	void                       contactVolume(Row&);

@@ -26,46 +26,57 @@ bool McaDensity::breaks(const Row& r, int k) const
 
 void McaDensity::breakLinks()
 {
-	vector<int> touched;
-	for (size_t i = 0; i < rows.size(); i++) {
-		Row& r = rows[i];
-		for (int k = 0; k < nLinks; k++) {
-			if (!r.link[k].p || !breaks(r, k)) continue;
-			const Side s = r.link[k];
-			Row&       o = rows[size_t(s.other)];
-			const int  back = (k + 3) % nLinks;
-			r.l->flags = (r.l->flags & ~(1 << k)) | exposedBit, o.l->flags = (o.l->flags & ~(1 << back)) | exposedBit;
-			s.p->linked = false;
-			s.p->startContact(distance(r, s)); // stresses go on
-			r.link[k] = o.link[back] = Side();
-			touched.push_back(int(i)), touched.push_back(s.other);
-			brokenLinks++;
-			r.m->brokenLinks++, o.m->brokenLinks++;
-		}
-	}
+	vector<std::pair<int, int>> pairs; // (row, link)
+	vector<int>                 touched;
+	for (size_t i = 0; i < rows.size(); i++)
+		for (int k = 0; k < nLinks; k++)
+			if (rows[i].link[k].p && breaks(rows[i], k)) pairs.emplace_back(int(i), k), touched.push_back(int(i)), touched.push_back(rows[i].link[k].other);
 	std::sort(touched.begin(), touched.end());
 	touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-	for (int i : touched)
-		keepVolume(i);
+	// the volume at the present positions, as all links measure it: the work of the last move must not be lost
+	vector<Real> J;
+	for (int i : touched) {
+		const Row& r = rows[size_t(i)];
+		J.push_back(r.l->rule == int(VolumeRule::affine) && r.l->offset > 0 ? r.l->offset * linkDeterminant(r) : r.m->volumeRatio);
+	}
+	for (const auto& [i, k] : pairs) {
+		Row& r = rows[size_t(i)];
+		if (!r.link[k].p) continue; // seen from the other side before
+		const Side s = r.link[k];
+		Row&       o = rows[size_t(s.other)];
+		const int  back = (k + 3) % nLinks;
+		r.l->flags = (r.l->flags & ~(1 << k)) | exposedBit, o.l->flags = (o.l->flags & ~(1 << back)) | exposedBit;
+		s.p->linked = false;
+		s.p->startContact(distance(r, s)); // stresses go on
+		r.link[k] = o.link[back] = Side();
+		brokenLinks++;
+		r.m->brokenLinks++, o.m->brokenLinks++;
+	}
+	for (size_t q = 0; q < touched.size(); q++)
+		keepVolume(touched[q], J[q]);
+}
+
+Real McaDensity::linkDeterminant(const Row& r) const
+{
+	Real Fxx = 0, Fxy = 0, Fyx = 0, Fyy = 0;
+	for (int k = 0; k < nLinks; k++) {
+		if (!r.link[k].p) continue;
+		const Vector3r x = rows[size_t(r.link[k].other)].state->se3.position - r.state->se3.position;
+		Fxx += mca::linkX[k] * x[0], Fyx += mca::linkX[k] * x[1], Fxy += mca::linkY[k] * x[0], Fyy += mca::linkY[k] * x[1];
+	}
+	return (Fxx * Fyy - Fxy * Fyx) / (9. * sqr(r.d));
 }
 
 // A break changes no volume: what the links had measured goes on as the rest state of what is left.
-void McaDensity::keepVolume(int i)
+void McaDensity::keepVolume(int i, Real J)
 {
 	Row&         r = rows[size_t(i)];
 	McaLawState& l = *r.l;
-	const Real   J = r.m->volumeRatio;
 	if (l.rule == int(VolumeRule::affine)) {
 		if (l.offset == 0) return;
-		Real Fxx = 0, Fxy = 0, Fyx = 0, Fyy = 0;
-		for (int k = 0; k < nLinks; k++) {
-			if (!r.link[k].p) continue;
-			const Vector3r x = rows[size_t(r.link[k].other)].state->se3.position - r.state->se3.position;
-			Fxx += mca::linkX[k] * x[0], Fyx += mca::linkX[k] * x[1], Fxy += mca::linkY[k] * x[0], Fyy += mca::linkY[k] * x[1];
-		}
-		const Real det = (Fxx * Fyy - Fxy * Fyx) / (9. * sqr(r.d));
-		l.offset       = det > mca::automata::minVolume ? J / det : 0.;
-		if (l.offset == 0) unsettled.push_back(i);
+		const Real det = linkDeterminant(r);
+		l.offset       = det > mca::automata::minVolume && J > 0 ? J / det : 0.;
+		if (l.offset == 0) unsettled.emplace_back(i, J > 0 ? J : r.m->volumeRatio);
 		return;
 	}
 	const bool inverse = l.rule == int(VolumeRule::inversePower);
@@ -78,7 +89,7 @@ void McaDensity::keepVolume(int i)
 	l.rest = sum + l.contactSum - (inverse ? 1. / J - 1. : std::sqrt(J) - 1.) / l.invN;
 	if (l.flags & mca::automata::linkBits) return;
 	l.rest = 0;
-	unsettled.push_back(i);
+	unsettled.emplace_back(i, r.m->volumeRatio);
 }
 
 Real McaDensity::stateEnergy(const Row& r, Real J) const { return r.l->cell * mca::storedEnergy(r.material->eos, J - 1.); }
@@ -87,8 +98,9 @@ Real McaDensity::stateEnergy(const Row& r, Real J) const { return r.l->cell * mc
 // tension is released, and booked. With the affine rule contacts have had a volume of their own: the more compressed of the two goes on.
 void McaDensity::settleVolumes(bool account)
 {
-	for (int i : unsettled) {
-		Row&       r    = rows[size_t(i)];
+	for (const auto& entry : unsettled) {
+		Row&       r    = rows[size_t(entry.first)];
+		const Real J    = entry.second;
 		const bool mean = r.l->rule == int(VolumeRule::meanDistance), affine = r.l->rule == int(VolumeRule::affine);
 		// only neighbours about as near as in the packing can take over: a far one would push across a gap
 		const auto near = [&](const Side& s) { return distance(r, s) < 1.1 * s.p->d; };
@@ -100,7 +112,7 @@ void McaDensity::settleVolumes(bool account)
 			n += near(s);
 			if (affine && s.p->pushes(s.side, r2)) sum += mca::volumeTerm<VolumeRule::inversePower, 2>(s.p->rest[s.side], r2);
 		}
-		const Real J = r.m->volumeRatio, Jc = 1. / (1. + sum / nLinks);
+		const Real Jc = 1. / (1. + sum / nLinks), now = r.m->volumeRatio;
 		const bool holds = n >= 3 && J < Jc;
 		const Real need  = mean ? (std::sqrt(J) - 1.) / (n * r.l->invN) : (1. / J - 1.) / (n * r.l->invN);
 		for (int c = r.firstContact; (holds || !affine) && c < r.lastContact; c++) {
@@ -113,10 +125,10 @@ void McaDensity::settleVolumes(bool account)
 		if (account && !holds && !r.material->eos.mieGrueneisen) fracture += stateEnergy(r, J); // else it is in the heat
 		if (holds) continue;
 		for (const Side& s : r.link) // stresses go on
-			if (s.p) s.p->s[s.side] *= Jc / J, s.p->tau[s.side] *= Jc / J;
+			if (s.p) s.p->s[s.side] *= Jc / now, s.p->tau[s.side] *= Jc / now;
 		for (int c = r.firstContact; c < r.lastContact; c++) {
 			const Side& s = contacts[size_t(c)];
-			s.p->s[s.side] *= Jc / J, s.p->tau[s.side] *= Jc / J;
+			s.p->s[s.side] *= Jc / now, s.p->tau[s.side] *= Jc / now;
 		}
 		r.m->volumeRatio = Jc;
 	}

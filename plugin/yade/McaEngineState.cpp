@@ -40,9 +40,9 @@ void McaEngine::writeBodies(Scene* scene)
 void McaEngine::writeEnergies(Scene* scene)
 {
 	const auto  a       = solver->account();
-	const char* names[] = { "mcaKinetic", "mcaVolumetric", "mcaDeviatoric", "mcaPlastic", "mcaViscous", "mcaFriction", "mcaFracture", "mcaCoupling", "mcaBoundary", "mcaExternal" };
-	const Real  values[] = { a.kinetic + a.centre, a.volumetric, a.deviatoric, a.plastic, a.viscous, a.friction, a.fracture, a.coupling, a.boundary, -a.external };
-	for (int k = 0; k < 10; k++)
+	const char* names[] = { "mcaKinetic", "mcaVolumetric", "mcaDeviatoric", "mcaPlastic", "mcaViscous", "mcaFriction", "mcaFracture", "mcaCoupling", "mcaBoundary", "mcaExternal", "mcaHalfStep" };
+	const Real  values[] = { a.kinetic, a.volumetric, a.deviatoric, a.plastic, a.viscous, a.friction, a.fracture, a.coupling, a.boundary, -a.external, a.centre };
+	for (int k = 0; k < 11; k++)
 		scene->energy->set(values[k], names[k], energyIndex[k]);
 }
 
@@ -119,7 +119,7 @@ py::dict McaEngine::energies()
 	if (!solver) ensureBuilt(Omega::instance().getScene().get());
 	const auto a = solver->account();
 	d["kinetic"] = a.kinetic, d["volumetric"] = a.volumetric, d["deviatoric"] = a.deviatoric, d["plastic"] = a.plastic, d["viscous"] = a.viscous, d["friction"] = a.friction;
-	d["fracture"] = a.fracture, d["coupling"] = a.coupling, d["boundary"] = a.boundary, d["external"] = a.external, d["total"] = a.total(), d["bookedError"] = a.bookedError();
+	d["fracture"] = a.fracture, d["coupling"] = a.coupling, d["boundary"] = a.boundary, d["external"] = a.external, d["halfStep"] = a.centre, d["total"] = a.total(), d["bookedError"] = a.bookedError();
 	d["bookedVolumetric"] = a.bookedVolumetric, d["bookedDeviatoric"] = a.bookedDeviatoric, d["bookedViscous"] = a.bookedViscous, d["kineticStart"] = a.kineticStart;
 	d["momentumX"] = a.px, d["momentumY"] = a.py, d["angularMomentum"] = a.angular, d["impulseX"] = a.impulseX, d["impulseY"] = a.impulseY;
 	return d;
