@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Smoothing of the shortest waves of volume in flowing material (2.2b), affine rule. J is a mean over the links, so two interleaved sub-lattices can
+// Smoothing of the shortest waves of volume in flowing material (5e), affine rule. J is a mean over the links, so two interleaved sub-lattices can
 // drift apart in volume without any force between them: only the shear stiffness of the pairs holds them together, and where the material flows
 // that is gone. Linked neighbours exchange volume by the fourth difference of J: stripes fade, smooth fields stay, the sum of J is kept.
 #pragma once
