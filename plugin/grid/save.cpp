@@ -25,7 +25,7 @@ namespace {
 		void raw(void* p, size_t n)
 		{
 			if (n > bytes.size() - at) throw Error("grid: the saved state is cut short; it cannot be restored.");
-			std::memcpy(p, bytes.data() + at, n);
+			if (n) std::memcpy(p, bytes.data() + at, n); // the address of an empty array may be null
 			at += n;
 		}
 	};
@@ -35,7 +35,10 @@ namespace {
 	{
 		uint64_t n = s.size();
 		io(a, n);
-		if constexpr (A::reading) s.assign(n, ' ');
+		if constexpr (A::reading) {
+			if (n > a.bytes.size()) throw Error("grid: the saved state is damaged; it cannot be restored.");
+			s.assign(n, ' ');
+		}
 		a.raw(s.data(), n);
 	}
 	template <class A, class T> void io(A& a, std::vector<T>& v);

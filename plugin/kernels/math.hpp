@@ -86,7 +86,7 @@ MCA_INLINE double fastExp(double x)
 	p              = fma(p, r, 1.);
 	p              = fma(p, r, 1.);
 	// the integer sits in the low bits of y: shift it into the exponent
-	return fromBits(bitsOf(p) + (bitsOf(y) << 52));
+	return fromBits(int64_t(uint64_t(bitsOf(p)) + (uint64_t(bitsOf(y)) << 52)));
 }
 
 /// x^e for x >= 0; 0^e = 0 for e > 0. Relative error about |e ln x| 2e-16.

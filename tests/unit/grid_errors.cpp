@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Bad input ends in one clear error that names the place, and nothing is lost.
 #include "grid_scene.hpp"
+#include <algorithm>
+#include <cstring>
 using namespace gridtest;
 
 namespace {
@@ -107,10 +109,16 @@ TEST(GridErrors, NonFiniteForceFromOutsideAndDamagedState)
 	g.computeForces(dt);
 	g.addNodeForce(3, std::nan(""), 0);
 	EXPECT_SAYS(refusal([&] { g.integrate(dt); }), "node (3, 0)");
-	auto       bytes  = g.save();
+	auto       bytes = g.save(), longName = bytes;
 	const auto before = everything(g);
 	bytes.resize(bytes.size() / 2);
 	EXPECT_SAYS(refusal([&] { g.restore(bytes); }), "cannot be restored");
+	const char name[] = "block";
+	const auto at     = std::search(longName.begin(), longName.end(), name, name + 5) - longName.begin();
+	ASSERT_GE(size_t(at), sizeof(uint64_t));
+	ASSERT_LT(size_t(at), longName.size());
+	std::memset(&longName[at - sizeof(uint64_t)], 0x7f, sizeof(uint64_t)); // the length of the name
+	EXPECT_SAYS(refusal([&] { g.restore(longName); }), "cannot be restored");
 	EXPECT_TRUE(sameBits(before, everything(g)));
 	EXPECT_SAYS(refusal([&] { Grid({ true, true, 2. }); }), "safety");
 }
