@@ -4,6 +4,21 @@
 set(debian "${MCA_PLUGIN_DIR}/debian")
 set(python lib/python3/dist-packages)
 
+# maintainer: whoever builds the package may name himself as for any Debian package (DEBFULLNAME, DEBEMAIL); else those who sign the last commit
+set(MCA_MAINTAINER "" CACHE STRING "maintainer field of the package, Name <address>; empty: DEBFULLNAME and DEBEMAIL, else the author of the last commit")
+set(maintainer "${MCA_MAINTAINER}")
+if(NOT maintainer AND DEFINED ENV{DEBFULLNAME} AND DEFINED ENV{DEBEMAIL})
+	set(maintainer "$ENV{DEBFULLNAME} <$ENV{DEBEMAIL}>")
+endif()
+if(NOT maintainer)
+	execute_process(
+		COMMAND git -C "${PROJECT_SOURCE_DIR}" log -1 "--format=%an <%ae>"
+		OUTPUT_VARIABLE maintainer OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+endif()
+if(NOT maintainer) # sources without history: the domain .invalid says that this is no address
+	set(maintainer "yade-mca authors <no-address@yade-mca.invalid>")
+endif()
+
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/pyscripts/yade_mca" DESTINATION ${python} PATTERN "__pycache__" EXCLUDE PATTERN "*.pyc" EXCLUDE)
 install(PROGRAMS "${PROJECT_SOURCE_DIR}/pyscripts/yade-mca" "${PROJECT_SOURCE_DIR}/pyscripts/yade-mca-batch" DESTINATION bin)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/pyscripts/examples" DESTINATION share/yade-mca FILES_MATCHING PATTERN "*.py" PATTERN "*.table" PATTERN "__pycache__" EXCLUDE)
@@ -13,12 +28,12 @@ install(FILES "${debian}/copyright" DESTINATION share/doc/yade-mca)
 install(
 	CODE "file(RPATH_CHANGE FILE \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${python}/yade_mca/lib/_yade_mca.so\" OLD_RPATH \"\\\$ORIGIN:${MCA_YADE_LIBDIR}\" NEW_RPATH \"\\\$ORIGIN\")
 set(root \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}\")
-execute_process(COMMAND /usr/bin/python3 \"${debian}/finish.py\" \"\${root}\" \"${PROJECT_SOURCE_DIR}\" \"${MCA_VERSION}\" \"${MCA_YADE_LIBDIR}\" COMMAND_ERROR_IS_FATAL ANY)")
+execute_process(COMMAND /usr/bin/python3 \"${debian}/finish.py\" \"\${root}\" \"${PROJECT_SOURCE_DIR}\" \"${MCA_VERSION}\" \"${MCA_YADE_LIBDIR}\" \"${maintainer}\" COMMAND_ERROR_IS_FATAL ANY)")
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME yade-mca)
 set(CPACK_PACKAGE_VERSION "${MCA_VERSION}")
-set(CPACK_PACKAGE_CONTACT "yade-mca maintainers <yade-mca@yade-mca.invalid>")
+set(CPACK_PACKAGE_CONTACT "${maintainer}")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "movable cellular automata with a Lagrangian grid for YADE")
 set(CPACK_PACKAGE_DESCRIPTION
     "Adds classes to the discrete element code YADE without rebuilding it: metals
