@@ -68,16 +68,21 @@ namespace sdk __attribute__((visibility("hidden"))) {
 		const string sym  = "_ZN4yade" + std::to_string(16 + cls.size()) + "CreatePureCustom" + cls + "Ev";
 		const auto   make = reinterpret_cast<Factorable* (*)()>(symbol(sym));
 		if (!make) return check(false, "class " + cls + " is not in this library");
-		// malloc tells the size in steps of 16 bytes; a recycled chunk may be larger than asked for, hence the smallest of several
-		size_t              usable = size_t(-1);
+		// malloc tells the size in steps, of 16 bytes with the C library and others with another malloc: compared with what it gives for the declared
+		// size in this process. A recycled chunk may be larger than asked for, hence the smallest of several.
+		size_t              usable = size_t(-1), expected = size_t(-1);
 		vector<Factorable*> made;
+		vector<void*>       plain;
 		for (int i = 0; i < 8; i++) {
 			made.push_back(make());
-			usable = std::min(usable, malloc_usable_size(made.back()));
+			plain.push_back(::operator new(declared));
+			usable   = std::min(usable, malloc_usable_size(made.back()));
+			expected = std::min(expected, malloc_usable_size(plain.back()));
 		}
 		for (Factorable* object : made)
 			delete object; // virtual destructor in slot 1, compared before
-		const size_t expected = declared <= 24 ? 24 : (declared + 8 + 15) / 16 * 16 - 8;
+		for (void* chunk : plain)
+			::operator delete(chunk);
 		check(usable == expected,
 		      "size of " + cls + ": the library allocates up to " + std::to_string(usable) + " bytes, the declaration has " + std::to_string(declared));
 	}
