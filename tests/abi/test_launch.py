@@ -51,6 +51,12 @@ def test_launcherFailsAsYadeDoes(tmp_path):
 	assert launch(['--no-such-option'], tmp_path).returncode == 2
 
 
+def test_launcherNamesTheTasksWhenAWordIsNone(tmp_path):
+	"""YADE itself would say nothing and open its prompt."""
+	done = launch(['benhc', '--quick'], tmp_path)
+	assert done.returncode == 2 and done.stdout.startswith("yade-mca: 'benhc' is neither a file nor a task; tasks here are info, check, bench"), done.stdout
+
+
 def test_launcherSetsTheWaitPolicyUnlessGiven(tmp_path):
 	script = tmp_path / 'policy.py'
 	script.write_text("import os; print('POLICY', os.environ['OMP_WAIT_POLICY'])\n")
