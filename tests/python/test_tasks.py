@@ -112,6 +112,15 @@ def test_plain_progress_away_from_a_terminal(monkeypatch):
 	assert '\r' not in out.getvalue()
 
 
+def test_progress_grows_with_what_is_to_do(monkeypatch):
+	out = io.StringIO()
+	monkeypatch.setattr(Progress, 'INTERVAL', 0.)
+	with Progress(100, 'job', 'us', stream=out) as p:
+		p.grow(200)
+		p.update(100)
+	assert out.getvalue().startswith('job:  50 %, 100 of 200 us')
+
+
 def test_info(plugin, tmp_path, capsys):
 	assert cli.main(['info', '--json', str(tmp_path / 'i.json')]) == 0
 	d = json.loads((tmp_path / 'i.json').read_text())

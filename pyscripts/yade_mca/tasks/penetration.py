@@ -21,7 +21,7 @@ SHARE = 0.05  #: of the time that may go into checkpoints
 def addArguments(parser):
 	options.addSceneArguments(parser)
 	group = parser.add_argument_group('run')
-	group.add_argument('--until', metavar='US', type=positive(float, 'us'), help='end at this time instead of by the physical criterion')
+	group.add_argument('--until', metavar='US', type=positive(float, 'us'), help='end at the first sample from this time on, instead of by the physical criterion')
 	group.add_argument('--longest', metavar='US', type=positive(float, 'us'), default=150., help='end at this time in any case (default: 150)')
 	group.add_argument('--restart', metavar='FILE', help='go on from a checkpoint; the scene is that of the checkpoint')
 	group.add_argument('--no-files', action='store_true', help='no pictures, ParaView files or checkpoints')
@@ -129,6 +129,9 @@ def run(args, report, progress):
 					print('penetration: the state at %.2f us is in %s' % (1e6 * run.time, keeper.path), file=sys.stderr)
 				raise
 			rate = (run.last['step'] - run.startStep) / run.stepSeconds
+			if run.time > expected and not run.finished:  # as much longer as the criterion looks back
+				expected = min(run.longest, run.time + run.window) if run.until is None else run.time
+				bar.grow(1e6 * (expected - already))
 			bar.update(1e6 * (min(run.time, expected) - already), stepsPerSecond=float(rate), energy=run.sane()['energySum'], energyBooked=run.sane()['energyBooked'])
 			if keeper:
 				output.update(run)

@@ -22,6 +22,11 @@ class Progress:
 				pass
 		self._line = self._bar is None and self.stream.isatty()
 
+	def grow(self, total):
+		"""A larger total: there is more to do than was thought at the start."""
+		self.total = total
+		if self._bar is not None: self._bar.total = total
+
 	def update(self, done, **fields):
 		"""`done` so far, not since the last call; fields are shown behind the bar."""
 		step, self.done = done - self.done, done
