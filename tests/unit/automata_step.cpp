@@ -61,7 +61,9 @@ TEST(AutomataStep, SleepingAndAccountChangeNoBit)
 			const auto v = everything(s);
 			if (k == 0) first = v, work = s.counters.blockSteps;
 			EXPECT_TRUE(sameBits(first, v)) << k << ' ' << int(rule);
-			if (k & 1) EXPECT_LT(s.counters.blockSteps, work);
+			if (k & 1) {
+				EXPECT_LT(s.counters.blockSteps, work);
+			}
 		}
 	}
 }
