@@ -3,6 +3,25 @@
 
 namespace mca::automata {
 namespace {
+	/// Johnson-Cook's radial return of eight automata, if any of them is above its static yield stress; else shrink and flow stay as they are.
+	void returnWhereAbove(const Yield& yield, const double* trial, const double* eqps, const double* temperature, double threeG, double dt, double* shrink, double* flow)
+	{
+		constexpr YieldKind kind = YieldKind::johnsonCook;
+		alignas(64) double  stress[lanes], slope[lanes];
+		double              over = 0;
+#pragma omp simd reduction(max : over)
+		for (int l = 0; l < lanes; l++) {
+			const StaticYield s = staticYield<kind>(yield, eqps[l], temperature[l]);
+			stress[l] = s.stress, slope[l] = s.slope;
+			over = max(over, trial[l] - s.stress);
+		}
+		if (!(over > 0.)) return;
+#pragma omp simd
+		for (int l = 0; l < lanes; l++) {
+			const Return r = radialReturn<kind>(yield, StaticYield { stress[l], slope[l] }, trial[l], threeG, dt);
+			shrink[l] = r.scale, flow[l] = r.dEqps;
+		}
+	}
 	/// (J s), (J tau) of the step before come in, those of this step go out.
 	template <YieldKind kind, bool intact, bool mixed, bool account>
 	void run(Store& S, size_t b, double dt, const double* contactSq, const double* contactOld, double* scaleOut, BlockResult& out, BlockWork* work)
@@ -75,40 +94,46 @@ namespace {
 			most      = max(most, trials[l]);
 			if (kind == YieldKind::johnsonCook) hottest = max(hottest, temp[l]);
 		}
-		const auto yieldAll = [&](auto flows) {
-			double work1 = 0, work2 = 0, work3 = 0;
-#pragma omp simd reduction(+ : work1, work2, work3)
-			for (int l = 0; l < blockSize; l++) {
-				const double zo = szz[l], zn = zNew[l], trial = trials[l];
-				const Return r  = flows.value ? radialReturn<kind>(yield, trial, eqps[l], kind == YieldKind::johnsonCook ? temp[l] : 0., threeG, dt) : Return { 1., 0. };
-				factor[l]       = r.scale * J[l];
-				szz[l]          = zn * r.scale;
-				if (kind != YieldKind::elastic) eqps[l] += r.dEqps;
-				if (kind == YieldKind::johnsonCook) temp[l] = fma(yield.heatPerWork * r.scale * trial, r.dEqps, temp[l]);
-				if (heat) {
-					const double q = J[l] * r.scale * trial * r.dEqps * perRho;
-					heat[l] += q, work3 += q * cell[l];
-				}
-				if (account) {
-					const double before = std::sqrt(equivalentStress2<2>(old2[l] * invN[l], zo));
-					// the stress before the step along the direction of flow: the two need not be parallel
-					const double both  = (3. * (oldNew[l] + (contactOld ? contactOld[base + l] : 0.)) * invN[l] + 1.5 * zo * zn);
-					const double along = trial > 0. ? both / trial : 0.;
-					const double pairs = sixth / invN[l]; // volume the pairs stand for: the cell, but on weighted rims
-					work1 += pairs * J[l] * 0.5 * (along + trial * r.scale) * r.dEqps;
-					// pair work that goes into volume change rather than into the stored deviatoric energy J sigma_eq^2/(6G); zero in a uniform field
-					const double vol = (coupleOld[l] + r.scale * coupleNew[l]) * invN[l] + 0.5 * (zo + szz[l]) * ti[l] * (1. / 3.);
-					work2 += pairs * J[l] * (vol - (threeG > 0 ? ti[l] * before * before / (2. * threeG) : 0.));
-				}
+		alignas(64) double shrink[blockSize], flow[blockSize]; // of the radial return
+		const auto returnAll = [&](int from, int to) {
+#pragma omp simd
+			for (int l = from; l < to; l++) {
+				const Return r = radialReturn<kind>(yield, trials[l], eqps[l], 0., threeG, dt);
+				shrink[l] = r.scale, flow[l] = r.dEqps;
 			}
-			plastic = work1, couple = work2, heated = work3;
 		};
 		// logarithms and powers are most of the cost: not where nobody reaches the yield stress of unstrained material at the highest temperature
-		if constexpr (kind == YieldKind::johnsonCook)
-			if (most <= staticYield<kind>(yield, 0., hottest).stress) yieldAll(std::false_type {});
-			else yieldAll(std::true_type {});
-		else
-			yieldAll(std::true_type {});
+		if constexpr (kind == YieldKind::johnsonCook) {
+			std::fill(shrink, shrink + blockSize, 1.), std::fill(flow, flow + blockSize, 0.);
+			if (most > staticYield<kind>(yield, 0., hottest).stress)
+				for (int g = 0; g < blockSize; g += lanes)
+					returnWhereAbove(yield, trials + g, eqps + g, temp + g, threeG, dt, shrink + g, flow + g);
+		} else
+			returnAll(0, blockSize);
+#pragma omp simd reduction(+ : plastic, couple, heated)
+		for (int l = 0; l < blockSize; l++) {
+			const double zo = szz[l], zn = zNew[l], trial = trials[l];
+			const Return r  = { shrink[l], flow[l] };
+			factor[l]       = r.scale * J[l];
+			szz[l]          = zn * r.scale;
+			if (kind != YieldKind::elastic) eqps[l] += r.dEqps;
+			if (kind == YieldKind::johnsonCook) temp[l] = fma(yield.heatPerWork * r.scale * trial, r.dEqps, temp[l]);
+			if (heat) {
+				const double q = J[l] * r.scale * trial * r.dEqps * perRho;
+				heat[l] += q, heated += q * cell[l];
+			}
+			if (account) {
+				const double before = std::sqrt(equivalentStress2<2>(old2[l] * invN[l], zo));
+				// the stress before the step along the direction of flow: the two need not be parallel
+				const double both  = (3. * (oldNew[l] + (contactOld ? contactOld[base + l] : 0.)) * invN[l] + 1.5 * zo * zn);
+				const double along = trial > 0. ? both / trial : 0.;
+				const double pairs = sixth / invN[l]; // volume the pairs stand for: the cell, but on weighted rims
+				plastic += pairs * J[l] * 0.5 * (along + trial * r.scale) * r.dEqps;
+				// pair work that goes into volume change rather than into the stored deviatoric energy J sigma_eq^2/(6G); zero in a uniform field
+				const double vol = (coupleOld[l] + r.scale * coupleNew[l]) * invN[l] + 0.5 * (zo + szz[l]) * ti[l] * (1. / 3.);
+				couple += pairs * J[l] * (vol - (threeG > 0 ? ti[l] * before * before / (2. * threeG) : 0.));
+			}
+		}
 		if (scaleOut)
 			for (int l = 0; l < blockSize; l++)
 				scaleOut[base + l] = factor[l];

@@ -54,13 +54,15 @@ struct CellForces {
 	double t0x, t0y, t1x, t1y; ///< [N/m], see the head of this file
 	double rate;               ///< reciprocal of the largest stable time step [1/s]; not finite or negative when the cell is unusable
 	double pressure;           ///< EOS pressure, without viscosity [Pa]
+	double trial;              ///< equivalent stress before the radial return [Pa]; 0 for a material that does not yield
 };
 
 /// Edge viscosity wants rho, c and the stress without q; the scalar one adds q to the pressure here.
 enum class GridViscosity { none, scalar };
 
 /// The whole update. restArea [m2]; energy: internal energy at n-1/2 per rest volume [J/m3], read only when mieGrueneisen.
-template <YieldKind kind, GridViscosity visc, bool hourglass, bool mieGrueneisen>
+/// flows = false leaves out the radial return: the same bits wherever `trial` stays at or below the static yield stress.
+template <YieldKind kind, GridViscosity visc, bool hourglass, bool mieGrueneisen, bool flows = true>
 inline CellForces updateCell(const CellConstants& c, const CellPattern& p, const CellPattern& v, double restArea, double energy, CellState& s)
 {
 	const double dt = c.dt, halfDt = 0.5 * dt;
@@ -106,9 +108,9 @@ inline CellForces updateCell(const CellConstants& c, const CellPattern& p, const
 	}
 
 	// radial return; the hourglass force yields with the deviator
-	double stressFactor = 1.;
-	if constexpr (kind != YieldKind::elastic) {
-		const double trial = std::sqrt(3. * (3. * m * m + d * d + k * k));
+	double stressFactor = 1., trial = 0.;
+	if constexpr (kind != YieldKind::elastic) trial = std::sqrt(3. * (3. * m * m + d * d + k * k));
+	if constexpr (kind != YieldKind::elastic && flows) {
 		const Return r     = radialReturn<kind>(c.yield, trial, s.eqps, s.temperature, 3. * c.G, dt);
 		stressFactor       = r.scale;
 		m *= r.scale;
@@ -172,6 +174,7 @@ inline CellForces updateCell(const CellConstants& c, const CellPattern& p, const
 	const double poison = 0. * (sx + sy + k + (rx + ry) + stressFactor);
 	f.rate              = area > 0. ? uv + std::sqrt(stiffest * u + uv * uv) + poison : std::numeric_limits<double>::infinity();
 	f.pressure          = pr;
+	f.trial             = trial;
 	return f;
 }
 }

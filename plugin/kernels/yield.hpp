@@ -47,15 +47,15 @@ template <YieldKind kind> MCA_INLINE StaticYield staticYield(const Yield& y, dou
 	}
 }
 
-/// Radial return (11): sigmaTrial = trial equivalent stress [Pa], threeG = 3 G [Pa], dt [s].
+/// Radial return (11): sigmaTrial = trial equivalent stress [Pa], s: static yield stress before the step, threeG = 3 G [Pa], dt [s].
 /// Johnson-Cook solves sigmaTrial - 3G d = Y(eps_p + d, d/dt) by two Newton steps from a close start: the residual is below 1e-6 Y.
+/// Below the static yield stress the answer is { 1, 0 } exactly, so a caller may leave it out there.
 /// Straight-line code: loops over automata or cells vectorise.
-template <YieldKind kind> MCA_INLINE Return radialReturn(const Yield& y, double sigmaTrial, double eqps, double temperature, double threeG, double dt)
+template <YieldKind kind> MCA_INLINE Return radialReturn(const Yield& y, const StaticYield& s, double sigmaTrial, double threeG, double dt)
 {
 	if constexpr (kind == YieldKind::elastic) return { 1., 0. };
 	else {
-		const StaticYield s = staticYield<kind>(y, eqps, temperature);
-		double            d = max(sigmaTrial - s.stress, 0.) / (threeG + s.slope);
+		double d = max(sigmaTrial - s.stress, 0.) / (threeG + s.slope);
 		if constexpr (kind == YieldKind::johnsonCook) {
 			const double perRate = 1. / (dt * y.rate0);
 			// Start: rate term and elastic unloading alone, 3G d + Y C ln(d/(dt rate0)) = sigmaTrial - Y, is w + ln w = l with w = 3G d/(Y C): Lambert's W of
@@ -78,6 +78,10 @@ template <YieldKind kind> MCA_INLINE Return radialReturn(const Yield& y, double 
 		const double scale = sigmaTrial > 0. ? (sigmaTrial - threeG * d) / sigmaTrial : 1.;
 		return { d > 0. ? max(scale, 0.) : 1., d };
 	}
+}
+template <YieldKind kind> MCA_INLINE Return radialReturn(const Yield& y, double sigmaTrial, double eqps, double temperature, double threeG, double dt)
+{
+	return radialReturn<kind>(y, staticYield<kind>(y, eqps, temperature), sigmaTrial, threeG, dt);
 }
 
 /// Calls f with the kind as a compile-time constant: the branch is taken once per block of automata or cells, not per element.
