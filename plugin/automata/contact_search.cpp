@@ -11,6 +11,7 @@ namespace {
 		double               x0 = 0, y0 = 0, inv = 0;
 		int                  nx = 1, ny = 1;
 		std::vector<int32_t> begin, item;
+		std::vector<double>  px, py; ///< positions in the order of `item`: the cells around an automaton are three runs of it
 		CellGrid(const Store& S, const std::vector<int32_t>& who, double size)
 		{
 			double x1 = -1e300, y1 = -1e300;
@@ -28,10 +29,14 @@ namespace {
 				begin[cellOf(S, i) + 1]++;
 			for (size_t c = 1; c < begin.size(); c++)
 				begin[c] += begin[c - 1];
+			for (auto v : { &px, &py })
+				v->resize(who.size());
 			item.resize(who.size());
 			std::vector<int32_t> at(begin.begin(), begin.end() - 1);
-			for (int32_t i : who)
-				item[at[cellOf(S, i)]++] = i;
+			for (int32_t i : who) {
+				const int32_t p = at[cellOf(S, i)]++;
+				item[p] = i, px[p] = S.x[i], py[p] = S.y[i];
+			}
 		}
 		int    column(double x) const { return std::max(0, std::min(int((x - x0) * inv), nx - 1)); }
 		int    row(double y) const { return std::max(0, std::min(int((y - y0) * inv), ny - 1)); }
@@ -49,15 +54,18 @@ namespace {
 	bool exposed(const Store& S, int32_t i) { return S.flags[i] & exposedBit; }
 	bool mayTouch(const Store& S, int32_t i, int32_t j) { return exposed(S, i) ? exposed(S, j) || foreign(S, i, j) : exposed(S, j) && foreign(S, j, i); }
 	double reach2(const Store& S, int32_t i, int32_t j, double skin) { return sqr(0.5 * (S.diameter[i] + S.diameter[j]) * (1. + skin)); }
-	double distance2(const Store& S, int32_t i, int32_t j) { return sqr(S.x[j] - S.x[i]) + sqr(S.y[j] - S.y[i]); }
-	/// Calls f(j) for all automata of the grid in the nine cells around i, until it returns true.
-	template <class F> void around(const Store& S, const CellGrid& grid, int32_t i, F&& f)
+	/// Calls f(j) for all automata of the grid that are closer to i than (1 + skin) times their rest distance, i included, until it returns true.
+	/// The size of the cells is at least the largest such distance.
+	template <class F> void around(const Store& S, const CellGrid& grid, int32_t i, double skin, F&& f)
 	{
-		const int cx = grid.column(S.x[i]), cy = grid.row(S.y[i]);
+		const double x = S.x[i], y0 = S.y[i], far2 = 1. / sqr(grid.inv);
+		const int    cx = grid.column(x), cy = grid.row(y0);
 		for (int y = std::max(cy - 1, 0); y <= std::min(cy + 1, grid.ny - 1); y++) {
 			const size_t first = size_t(y) * grid.nx + std::max(cx - 1, 0), last = size_t(y) * grid.nx + std::min(cx + 1, grid.nx - 1);
-			for (int32_t p = grid.begin[first]; p < grid.begin[last + 1]; p++)
-				if (f(grid.item[p])) return;
+			for (int32_t p = grid.begin[first]; p < grid.begin[last + 1]; p++) {
+				const double r2 = sqr(grid.px[p] - x) + sqr(grid.py[p] - y0);
+				if (r2 < far2 && r2 < reach2(S, i, grid.item[p], skin) && f(grid.item[p])) return;
+			}
 		}
 	}
 	/// Adds to `who` the interior automata that something foreign is about to reach, in the order of the arrays.
@@ -73,8 +81,8 @@ namespace {
 				for (int l = 0; l < S.blocks[b].count; l++) {
 					const int32_t i = int32_t(b * blockSize + l);
 					if (exposed(S, i) || S.x[i] < grid.x0 - margin || S.y[i] < grid.y0 - margin || S.x[i] > x1 || S.y[i] > y1) continue;
-					around(S, grid, i, [&](int32_t j) {
-						if (!foreign(S, j, i) || !(distance2(S, i, j) < reach2(S, i, j, skin))) return false;
+					around(S, grid, i, skin, [&](int32_t j) {
+						if (!foreign(S, j, i)) return false;
 						parts[t].push_back(i);
 						return true;
 					});
@@ -96,18 +104,31 @@ namespace {
 		for (int k = 0; k < nLinks; k++)
 			if (((S.flags[i] >> (hadShift + k)) & 1) && !((S.flags[i] >> k) & 1) && S.neighbour[linkSlot(i, k)] == j) s = S.s[linkSlot(i, k)], tau = S.tau[linkSlot(i, k)];
 	}
-	void constants(const Store& S, Contacts& C, size_t c)
+	/// What a pair of species has in common.
+	struct PairConstants {
+		double d, share, twoG, friction, viscLinear, viscQuadratic;
+	};
+	std::vector<PairConstants> pairConstants(const Store& S)
 	{
-		const int32_t   i = C.owner[c], j = C.other[c], a = S.speciesOf(i), b = S.speciesOf(j);
-		const Material &m = S.materials[S.species[a].material], &o = S.materials[S.species[b].material];
-		const double    di = S.diameter[i], dj = S.diameter[j];
-		C.d[c]        = 0.5 * (di + dj);
+		std::vector<PairConstants> table;
+		for (const Species& a : S.species)
+			for (const Species& b : S.species) {
+				const Material &m = S.materials[a.material], &o = S.materials[b.material];
+				PairConstants   p { 0.5 * (a.d + b.d), a.d / (a.d + b.d), 0, std::min(m.friction, o.friction), 0, 0 };
+				p.twoG = seriesTwoG(m.G, o.G, p.share);
+				pairViscosity(m, o, p.viscLinear, p.viscQuadratic);
+				table.push_back(p);
+			}
+		return table;
+	}
+	void constants(const Store& S, const std::vector<PairConstants>& table, Contacts& C, size_t c)
+	{
+		const int32_t        i = C.owner[c], j = C.other[c];
+		const PairConstants& p = table[size_t(S.speciesOf(i)) * S.species.size() + S.speciesOf(j)];
+		C.d[c]                 = p.d;
 		// surfaces meet at d; a pair that is found closer (its link broke, or its automata have just become a surface) starts without push
 		C.rest[c]     = std::min(C.d[c], std::sqrt(sqr(S.x[j] - S.x[i]) + sqr(S.y[j] - S.y[i])));
-		C.share[c]    = di / (di + dj);
-		C.twoG[c]     = S.pairTwoG(a, j, C.share[c]);
-		C.friction[c] = std::min(m.friction, o.friction);
-		S.pairViscosity(a, j, C.viscLinear[c], C.viscQuadratic[c]);
+		C.share[c] = p.share, C.twoG[c] = p.twoG, C.friction[c] = p.friction, C.viscLinear[c] = p.viscLinear, C.viscQuadratic[c] = p.viscQuadratic;
 	}
 }
 
@@ -147,8 +168,8 @@ void searchContacts(Store& S, Contacts& C, double skin, int threads)
 		for (long q = n * t / threads; q < n * (t + 1) / threads; q++) {
 			const int32_t i  = who[q];
 			row.clear();
-			around(S, grid, i, [&](int32_t j) {
-				if (j != i && mayTouch(S, i, j) && distance2(S, i, j) < reach2(S, i, j, skin) && !linked(S, i, j)) row.push_back(j);
+			around(S, grid, i, skin, [&](int32_t j) {
+				if (j != i && mayTouch(S, i, j) && !linked(S, i, j)) row.push_back(j);
 				return false;
 			});
 			if (row.empty()) continue;
@@ -171,6 +192,7 @@ void searchContacts(Store& S, Contacts& C, double skin, int threads)
 		v->assign(m, 0.);
 	C.sizeScratch();
 	C.reverse.assign(m, 0);
+	const auto           table = pairConstants(S);
 	std::vector<int32_t> rowOf(S.size(), -1);
 	for (size_t r = 0; r < C.rows(); r++)
 		rowOf[C.rowOwner[r]] = int32_t(r), S.blocks[C.rowOwner[r] / blockSize].contact = true;
@@ -179,8 +201,9 @@ void searchContacts(Store& S, Contacts& C, double skin, int threads)
 		const int32_t j = C.other[c];
 		for (int32_t q = C.rowBegin[rowOf[j]]; q < C.rowBegin[rowOf[j] + 1]; q++)
 			if (C.other[q] == C.owner[c]) C.reverse[c] = q;
-		constants(S, C, c);
+		constants(S, table, C, c);
 		carryOver(S, old, oldRow, C.owner[c], j, C.s[c], C.tau[c], C.rest[c]);
 	}
+	contactReciprocals(S, C);
 }
 }

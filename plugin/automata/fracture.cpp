@@ -144,7 +144,7 @@ void Solver::settleVolumes()
 		for (size_t c = first; c < last; c++) {
 			const double r2 = sqr(distance(c));
 			n += near(c);
-			if (affine && pushes(contacts, c, r2)) sum += volumeTerm<VolumeRule::inversePower, 2>(contacts.rest[c], r2);
+			if (affine && pushes(r2, contacts.rest[c], contacts.d[c]) > 0.) sum += volumeTerm<VolumeRule::inversePower, 2>(contacts.rest[c], r2);
 		}
 		const double Jc = 1. / (1. + sum / nLinks);
 		const bool   holds = n >= 3 && J < Jc;

@@ -30,7 +30,7 @@ namespace {
 		void               raw(void* p, size_t n)
 		{
 			if (n > in.size() - at) throw Error("the saved state of the automata ends too early: the file is damaged or from another version.");
-			std::memcpy(p, in.data() + at, n);
+			if (n) std::memcpy(p, in.data() + at, n);
 			at += n;
 		}
 		template <class T> void operator()(std::vector<T>& v)
@@ -94,6 +94,7 @@ void Solver::load(const std::string& bytes)
 	fresh.timing = timing;
 	fresh.works.assign(fresh.store.blocks.size(), {});
 	fresh.contacts.sizeScratch();
+	contactReciprocals(fresh.store, fresh.contacts);
 	fresh.contactAdjacent.clear();
 	fresh.store.packAll();
 	*this = std::move(fresh);

@@ -66,8 +66,8 @@ void Solver::checkResults(double nearestContact, size_t closest)
 	counters.clamped += clamped;
 	counters.deepest = std::min(counters.deepest, std::sqrt(nearest));
 	// linked automata may shear until they are close; contacts may not overlap that far
-	if (nearestContact >= 0.25 && nearest >= 0.04) return;
-	nearest = nearestContact < 0.25 ? nearestContact : nearest;
+	if (nearestContact >= deepest && nearest >= 0.04) return;
+	nearest = nearestContact < deepest ? nearestContact : nearest;
 	if (nearestContact <= nearest) overlapError(contacts.owner[closest], contacts.other[closest], std::sqrt(nearest));
 	for (int32_t b : awake)
 		if (results[b].nearest <= nearest)
@@ -304,17 +304,21 @@ void Solver::searchIfNeeded()
 {
 	Store& S = store;
 	bool   due = searchDue;
-	double limit2 = 1e300;
+	double reach = 1e300; // a pair that is not listed may come nearer by this much before it can touch
 	for (auto& sp : S.species)
-		limit2 = std::min(limit2, sqr(0.5 * options.skin * sp.d));
-	const long n = long(exposed.size());
-	double     most = 0;
-#pragma omp parallel for simd schedule(static) reduction(max : most) if (n > 4096)
+		reach = std::min(reach, options.skin * sp.d);
+	const long    n = long(exposed.size());
+	const int32_t* who = exposed.data();
+	const double * x = S.x.data(), *y = S.y.data(), *x0 = searchX.data(), *y0 = searchY.data();
+	// no two have moved against each other by more than the diagonal of the box that holds all displacements, nor by more than twice the largest
+	double most = 0, left = 1e300, right = -1e300, low = 1e300, high = -1e300;
+#pragma omp parallel for simd schedule(static) reduction(max : most, right, high) reduction(min : left, low) if (n > 4096)
 	for (long q = 0; q < n; q++) {
-		const double dx = S.x[exposed[q]] - searchX[q], dy = S.y[exposed[q]] - searchY[q];
+		const double dx = x[who[q]] - x0[q], dy = y[who[q]] - y0[q];
 		most = max(most, dx * dx + dy * dy);
+		left = min(left, dx), right = max(right, dx), low = min(low, dy), high = max(high, dy);
 	}
-	due |= most > limit2;
+	due |= n > 0 && 4. * most > sqr(reach) && sqr(right - left) + sqr(high - low) > sqr(reach);
 	// links break in batches, every fourth step: each batch needs a search, and a few steps do not matter to a process that takes hundreds
 	if (!due && counters.steps % breakPeriod == 0) due = breaking();
 	if (due) search();

@@ -43,6 +43,15 @@ struct Block {
 	bool    ringsAwake = false; ///< the blocks around it have been woken
 };
 
+/// Series rule for the pair of two materials [Pa]; q = arm of the first / distance.
+inline double seriesTwoG(double a, double b, double q) { return a > 0 && b > 0 ? 2. / (q / a + (1. - q) / b) : 0.; }
+/// The smaller of both sides' viscous coefficients [Pa s/m], [Pa s2/m2]: a heavy neighbour must not overdamp a light automaton.
+inline void pairViscosity(const Material& a, const Material& b, double& linear, double& quadratic)
+{
+	linear    = std::min(a.viscosity.linear * a.eos.rho0 * a.eos.c0, b.viscosity.linear * b.eos.rho0 * b.eos.c0);
+	quadratic = std::min(a.viscosity.quadratic * a.eos.rho0, b.viscosity.quadratic * b.eos.rho0);
+}
+
 struct Store {
 	// one entry per automaton; SI units per unit thickness
 	std::vector<double> x, y, vx, vy, omega, angle;      ///< position [m], velocity [m/s], spin [rad/s], turned angle [rad]
@@ -89,18 +98,11 @@ struct Store {
 
 	size_t size() const { return x.size(); }
 	int32_t speciesOf(size_t i) const { return blocks[i / blockSize].species; }
-	/// Series rule for the pair of this species with automaton j [Pa]; q = arm of this side / distance.
-	double pairTwoG(int32_t mine, size_t j, double q) const
+	/// of the pair of this species with automaton j [Pa]; q = arm of this side / distance
+	double pairTwoG(int32_t mine, size_t j, double q) const { return seriesTwoG(materials[species[mine].material].G, materials[species[speciesOf(j)].material].G, q); }
+	void   pairViscosity(int32_t mine, size_t j, double& linear, double& quadratic) const
 	{
-		const double a = materials[species[mine].material].G, b = materials[species[speciesOf(j)].material].G;
-		return a > 0 && b > 0 ? 2. / (q / a + (1. - q) / b) : 0.;
-	}
-	/// The smaller of both sides' viscous coefficients [Pa s/m], [Pa s2/m2]: a heavy neighbour must not overdamp a light automaton.
-	void pairViscosity(int32_t mine, size_t j, double& linear, double& quadratic) const
-	{
-		const Material &a = materials[species[mine].material], &b = materials[species[speciesOf(j)].material];
-		linear    = std::min(a.viscosity.linear * a.eos.rho0 * a.eos.c0, b.viscosity.linear * b.eos.rho0 * b.eos.c0);
-		quadratic = std::min(a.viscosity.quadratic * a.eos.rho0, b.viscosity.quadratic * b.eos.rho0);
+		automata::pairViscosity(materials[species[mine].material], materials[species[speciesOf(j)].material], linear, quadratic);
 	}
 	const Material& materialOf(const Block& b) const { return materials[species[b.species].material]; }
 
@@ -119,6 +121,7 @@ struct Contacts {
 	std::vector<double>  s, tau;                ///< as for links [Pa]
 	std::vector<double>  rest;                            ///< rest distance of this side: that of the two automata, or less when they came into contact already closer [m]
 	std::vector<double>  d, twoG, friction, viscLinear, viscQuadratic, share; ///< constants of the pair; share = q_owner/(q_owner+q_other)
+	std::vector<double>  perTwoG, perOwnG;      ///< 1/twoG, 1/G of the owner's material [1/Pa]; 0 where that is zero
 	std::vector<double>  a, b, c;               ///< scratch per half-contact
 	std::vector<double>  dx, dy, r2;            ///< vector from owner to other [m] and its square, of this step
 	std::vector<double>  pushing, touch;        ///< 1 where this side pushes, where any side does; else 0
@@ -127,7 +130,7 @@ struct Contacts {
 	void sizeScratch()
 	{
 		for (auto v : { &a, &b, &c, &dx, &dy, &r2, &pushing, &touch, &along, &press })
-			v->assign(size(), 0.);
+			v->resize(size());
 	}
 	std::vector<int32_t> rowOwner, rowBegin;    ///< rows: owner and first half-contact; rowBegin has one entry more
 	size_t               size() const { return owner.size(); }

@@ -115,14 +115,19 @@ def test_intactBodySearchesOnceAndHasNoContacts(plugin):
 	assert e.counters()['searches'] == 0
 
 
-def test_searchesFollowTheWayOfTheRim(plugin):
-	"""A body in free flight: one search for every half of skin diameters."""
+def test_searchesFollowTheWayOfBodiesAgainstEachOther(plugin):
+	"""A body in free flight needs none after the first; two that part need one whenever an unlisted pair may have come nearer by the search range."""
 	from yade import O
+	from yade_mca import packings
 	for skin in (0.2, 0.4, 0.8):
 		e = bar(8, pulse=400., skin=skin)
 		O.run(1000, True)
-		way = 1000 * O.dt * 400.
-		assert abs(e.counters()['searches'] - way / (0.5 * skin * D)) < 0.05 * way / (0.5 * skin * D) + 2
+		assert e.counters()['searches'] == 1
+		e = bar(8, pulse=400., skin=skin)
+		packings.addBodies(packings.hexagonal(D, packings.Rectangle((-50 * D, 0), (8 * D, 6 * D))), O.materials[0], velocity=(-200., 0.))
+		O.run(1000, True)
+		way = 1000 * O.dt * 600.
+		assert abs(e.counters()['searches'] - way / (skin * D)) < 0.05 * way / (skin * D) + 2
 
 
 @pytest.mark.parametrize('period, written', [(0, [29]), (10, [9, 19, 29]), (1, list(range(30)))])
