@@ -3,6 +3,8 @@
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
 #include <pkg/common/Sphere.hpp>
+#include "McaGridEngine.hpp"
+#include "McaTimeStepper.hpp"
 #include <sdk/arrayView.hpp>
 
 namespace yade {
@@ -226,14 +228,30 @@ void McaEngine::prepare(Scene* scene)
 	if (solver->criticalStep() == 0) computeForces(scene);
 }
 
+// Breaking links and first contacts can halve the stable step at once. Nothing has moved yet, so a time stepper that comes before this engine may
+// still choose a shorter one, unless something between the two has already used the longer.
+bool McaEngine::shortenStep(Scene* scene, Real limit) const
+{
+	McaTimeStepper* stepper = nullptr;
+	for (const auto& e : scene->engines) {
+		if (e.get() == this) break;
+		if (e->dead) continue;
+		if (auto* t = dynamic_cast<McaTimeStepper*>(e.get())) stepper = t->active ? t : nullptr;
+		else if (dynamic_cast<McaGridEngine*>(e.get()) || e->getClassName() == "NewtonIntegrator") stepper = nullptr;
+	}
+	if (!stepper) return false;
+	stepper->shorten(scene, limit, getClassName() + (label.empty() ? "" : " " + label));
+	return true;
+}
+
 void McaEngine::checkStep(Scene* scene) const
 {
 	const Real limit = solver->criticalStep();
-	if (scene->dt > limit) {
+	if (scene->dt > limit && !shortenStep(scene, limit)) {
 		const auto& S = solver->store;
 		std::ostringstream s;
 		s << "McaEngine: O.dt = " << scene->dt << " s is above the largest stable step " << limit << " s of body " << S.id[solver->stiffestAutomaton()]
-		  << ". Set O.dt below it, or adaptive=True.";
+		  << ". Set O.dt below it, or adaptive=True, or put a McaTimeStepper before it.";
 		throw mca::Error(s.str());
 	}
 }

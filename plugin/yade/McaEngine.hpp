@@ -95,6 +95,7 @@ private:
 	void                   writeEnergies(Scene*);
 	void                   finish(Scene*);
 	void                   checkStep(Scene*) const;
+	bool                   shortenStep(Scene* scene, Real limit) const;
 	Real                   drawStrength(const McaMat&, int id) const;
 };
 REGISTER_SERIALIZABLE(McaEngine);

@@ -46,4 +46,10 @@ void McaTimeStepper::computeTimeStep(Scene* scene)
 	const Real dt = std::min({ factor * limit, largest, previous > 0 ? growth * previous : largest });
 	scene->dt = previous = dt;
 }
+
+void McaTimeStepper::shorten(Scene* scene, Real found, const string& who)
+{
+	limit = found, limitedBy = who;
+	scene->dt = previous = std::min(factor * limit, previous);
+}
 } // namespace yade

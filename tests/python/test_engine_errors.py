@@ -204,3 +204,19 @@ def test_afterAnErrorTheStateIsThatBeforeTheStep(plugin, tmp_path):
 		O.run(100, True)
 		ends.append(scene.digest(e))
 	assert ends[0] == ends[1]
+
+
+def test_aSuddenFallOfTheStableStepShortensTheStepInsteadOfEndingTheRun(plugin):
+	"""Bodies meet and links break within a step: with 0.95 of the limit the step chosen before is then too long."""
+	from yade import O
+	from yade.wrapper import McaTimeStepper
+	scene.impact()
+	e = scene.engine()
+	O.engines = [McaTimeStepper(factor=0.95), e]
+	shortened = 0
+	for _ in range(300):
+		chosen = e.criticalTimeStep
+		O.step()
+		shortened += O.dt < 0.95 * chosen * (1 - 1e-12) and O.engines[0].limitedBy == 'McaEngine' and O.dt > 0
+	assert e.counters()['brokenLinks'] > 10 and shortened > 0
+	assert np.isfinite(e.field('x')).all()
