@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Finds the compiled part of the plugin, checks that it is whole and fits this YADE, and loads it. Each refusal is an ImportError with a remedy."""
+import atexit
 import importlib.machinery
 import importlib.util
 import json
 import os
+import shutil
 import sys
 import types
 import zlib
@@ -91,8 +93,8 @@ def checkYadeLibraries(manifest):
 
 
 def importYade(manifest):
-	folder = os.path.join(manifest['yadeLibDir'], 'py')
-	if 'yade' not in sys.modules and folder not in sys.path: sys.path.append(folder)
+	folder, first = os.path.join(manifest['yadeLibDir'], 'py'), 'yade' not in sys.modules
+	if first and folder not in sys.path: sys.path.append(folder)
 	try:
 		import yade.config
 		import yade.system
@@ -100,6 +102,12 @@ def importYade(manifest):
 	except ImportError as e:
 		if sys.prefix != '/usr': refuse('YADE cannot be imported into %s (%s)' % (sys.executable, e), "use YADE's interpreter, /usr/bin/python3, or start yade or yade-mca")
 		refuse('YADE cannot be imported (%s)' % e, REINSTALL_YADE)
+	if first: atexit.register(removeTemporaryFolder, os.path.dirname(yade.wrapper.Omega().tmpFilename()), os.getpid())
+
+
+def removeTemporaryFolder(folder, process):
+	"""YADE makes a folder in /tmp for each process; the command `yade` removes it when it ends, an import into Python does not."""
+	if os.getpid() == process: shutil.rmtree(folder, ignore_errors=True)
 
 
 def openExtension(name, path):

@@ -79,6 +79,12 @@ def test_launcherOpensASavedSimulation(tmp_path):
 	assert re.search(r'OPENED x86-64\S* 1', done.stdout), done.stdout
 
 
+def test_nothingStaysBehindInTheTemporaryFolder():
+	done = runPython("import yade_mca\nfrom yade import O\nimport os\nprint('FOLDER', os.path.dirname(O.tmpFilename()))\n")
+	folder = re.search(r'FOLDER (\S+)', done.stdout).group(1)
+	assert not os.path.exists(folder), folder
+
+
 def test_batch(tmp_path):
 	(tmp_path / 't.table').write_text('x\n1\n2\n')
 	(tmp_path / 'b.py').write_text("readParamsFromTable(x=0)\nfrom yade.params import table\nprint('PARAMETER', table.x, McaInfo().isa)\n")
