@@ -18,7 +18,7 @@ from ._yade import scene as omega
 from ._yade import yadeClass
 from .packings import Rectangle, addBodies, hexagonal
 
-__all__ = ['Scene', 'SceneError', 'bar', 'gradedLines', 'penetration', 'plateImpact', 'rodMeasure', 'taylorBar', 'tiedPlate', 'touchDown']
+__all__ = ['Scene', 'SceneError', 'bar', 'gradedLines', 'law2Engines', 'penetration', 'plateImpact', 'rodMeasure', 'taylorBar', 'tiedPlate', 'touchDown']
 
 PITCH = 0.5 * math.sqrt(3)  #: distance of close-packed rows over the spacing
 SPALL = (3.8e9, 3.0e9)  #: tensile strength of rod and plate [Pa], see penetration()
@@ -70,6 +70,21 @@ def _start(engineOptions):
 	s.automata = yadeClass('McaEngine')(**(engineOptions or {}))
 	omega().engines = [s.automata]
 	return s
+
+
+def law2Engines(volumeRule='affine', stepFactor=None, **newton):
+	"""Engines that move automata by the law in YADE's own loop, beside walls, facets and boxes; put them into O.engines. Slow: McaEngine is the fast road.
+
+	volumeRule: of McaDensity. stepFactor: share of the largest stable time step for a McaTimeStepper; None: the script sets O.dt [s].
+	newton: attributes of NewtonIntegrator, e.g. gravity=(0, -9.81, 0) [m/s2].
+	"""
+	make = lambda name, *a, **k: yadeClass(name)(*a, **k)
+	bounds = [make('Bo1_Sphere_Aabb', aabbEnlargeFactor=1.4), make('Bo1_Facet_Aabb'), make('Bo1_Wall_Aabb'), make('Bo1_Box_Aabb')]
+	geometry = [make('Ig2_Sphere_Sphere_ScGeom', interactionDetectionFactor=1.4), make('Ig2_Facet_Sphere_ScGeom'), make('Ig2_Wall_Sphere_ScGeom'), make('Ig2_Box_Sphere_ScGeom')]
+	laws = [make('Ip2_McaMat_McaMat_McaPhys'), make('Ip2_FrictMat_McaMat_McaPhys')], [make('Law2_ScGeom_McaPhys_Mca')]
+	stepper = [make('McaTimeStepper', factor=stepFactor)] if stepFactor else []
+	return [make('ForceResetter'), make('InsertionSortCollider', bounds), *stepper, make('McaDensity', volumeRule=volumeRule), make('InteractionLoop', geometry, *laws),
+	        make('McaForces'), make('NewtonIntegrator', damping=0, **newton)]
 
 
 def bar(material, length, height, spacing, velocity=(0., 0.), angle=0., engineOptions=None):
@@ -233,7 +248,7 @@ def tiedPlate(material, thickness, spacing, automataWidth=80e-3, plateWidth=120e
 
 def penetration(thickness=25e-3, spacing=1e-3, speed=1520., mode='coupled', ends=None, rodLength=100e-3, rodDiameter=10e-3, rod='WHA_JC', plate='4340',
                 automataWidth=80e-3, plateWidth=120e-3, fractureStrain=1.0, spallStrength=SPALL, strengthSpread=0.05, friction=None, eos='shockAdiabat',
-                yieldModel=None, viscosity=1., seed=1, dtFactor=0.3, account=True, engineOptions=None):
+                yieldModel=None, viscosity=1., seed=1, dtFactor=0.5, account=True, engineOptions=None):
 	"""A rod along y falls on the upper face of a plate: the main job. Parts 'rod', 'plate'; impact direction (0, -1).
 
 	thickness [m], spacing [m], speed [m/s]; mode and ends as in tiedPlate() (ends None: 'fixed' when coupled, 'viscous' with automata only)

@@ -3,25 +3,14 @@
 import numpy as np
 
 
-def engines(road, dt, walls=False, rule='affine', **newton):
+def engines(road, dt, rule='affine', **newton):
 	"""O.engines for the road 'engine' or 'law2' with a fixed time step [s]."""
 	from yade import O
-	from yade.wrapper import (Bo1_Facet_Aabb, Bo1_Sphere_Aabb, Bo1_Wall_Aabb, Bo1_Box_Aabb, ForceResetter, Ig2_Box_Sphere_ScGeom, Ig2_Facet_Sphere_ScGeom,
-	                          Ig2_Sphere_Sphere_ScGeom, Ig2_Wall_Sphere_ScGeom, InsertionSortCollider, InteractionLoop, Ip2_FrictMat_McaMat_McaPhys,
-	                          Ip2_McaMat_McaMat_McaPhys, Law2_ScGeom_McaPhys_Mca, McaDensity, McaEngine, McaForces, NewtonIntegrator)
+	from yade.wrapper import McaEngine
+	from yade_mca.scenes import law2Engines
 	O.dt = dt
-	if road == 'engine':
-		O.engines = [McaEngine(adaptive=False, volumeRule=rule)]
-		return
-	O.engines = [
-	        ForceResetter(),
-	        InsertionSortCollider([Bo1_Sphere_Aabb(aabbEnlargeFactor=1.4), Bo1_Facet_Aabb(), Bo1_Wall_Aabb(), Bo1_Box_Aabb()]),
-	        McaDensity(volumeRule=rule),
-	        InteractionLoop([Ig2_Sphere_Sphere_ScGeom(interactionDetectionFactor=1.4), Ig2_Facet_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom(), Ig2_Box_Sphere_ScGeom()],
-	                        [Ip2_McaMat_McaMat_McaPhys(), Ip2_FrictMat_McaMat_McaPhys()], [Law2_ScGeom_McaPhys_Mca()]),
-	        McaForces(),
-	        NewtonIntegrator(damping=0, **newton),
-	]
+	if road == 'engine': O.engines = [McaEngine(adaptive=False, volumeRule=rule)]
+	else: O.engines = law2Engines(rule, **newton)
 
 
 def density():

@@ -2,26 +2,11 @@
 """The law in YADE's own loop against McaEngine: the same trajectory."""
 import numpy as np
 
+from ..scenes import law2Engines
 from .automata_scene import AutomataRun, impactBlocks
 
 JOHNSON_COOK = dict(yieldModel='johnsonCook', yieldStress=0.79e9, hardeningModulus=0.51e9, hardeningExponent=0.26, rateCoefficient=0.014, thermalSoftening=1.03,
                     meltTemperature=1793., heatCapacity=477., eos='mieGruneisen', gruneisen=1.7)
-
-
-def law2Engines(rule='affine', walls=False, **newton):
-	"""Engines that move automata by the law in YADE's loop, with walls, facets and boxes as neighbours; keywords go to NewtonIntegrator."""
-	from yade.wrapper import (Bo1_Box_Aabb, Bo1_Facet_Aabb, Bo1_Sphere_Aabb, Bo1_Wall_Aabb, ForceResetter, Ig2_Box_Sphere_ScGeom, Ig2_Facet_Sphere_ScGeom,
-	                          Ig2_Sphere_Sphere_ScGeom, Ig2_Wall_Sphere_ScGeom, InsertionSortCollider, InteractionLoop, Ip2_FrictMat_McaMat_McaPhys,
-	                          Ip2_McaMat_McaMat_McaPhys, Law2_ScGeom_McaPhys_Mca, McaDensity, McaForces, NewtonIntegrator)
-	return [
-	        ForceResetter(),
-	        InsertionSortCollider([Bo1_Sphere_Aabb(aabbEnlargeFactor=1.4), Bo1_Facet_Aabb(), Bo1_Wall_Aabb(), Bo1_Box_Aabb()]),
-	        McaDensity(volumeRule=rule),
-	        InteractionLoop([Ig2_Sphere_Sphere_ScGeom(interactionDetectionFactor=1.4), Ig2_Facet_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom(), Ig2_Box_Sphere_ScGeom()],
-	                        [Ip2_McaMat_McaMat_McaPhys(), Ip2_FrictMat_McaMat_McaPhys()], [Law2_ScGeom_McaPhys_Mca()]),
-	        McaForces(),
-	        NewtonIntegrator(damping=0, **newton),
-	]
 
 
 def trajectory(road, steps, rule, changes, dt=2e-8):

@@ -13,6 +13,7 @@ import numpy as np
 
 from .. import _yade, materials, packings
 from .._yade import yadeClass
+from ..scenes import law2Engines
 from .bench_meter import Meter, withoutOthers
 
 D, DT = 1e-3, 1e-8  #: spacing [m]; time step [s], a tenth of the limit
@@ -31,14 +32,6 @@ def loop(physics, law, factor, geometry='Ig2_Sphere_Sphere_ScGeom', d=D):
 	        make('InteractionLoop')([make(geometry)(interactionDetectionFactor=factor)], physics, law),
 	        make('NewtonIntegrator')(damping=0),
 	]
-
-
-def ownLoop(factor=None, rule='affine'):
-	"""Puts the law of the automata in YADE's own loop into O.engines; factor: of McaTimeStepper, None: O.dt stays as it is."""
-	make = yadeClass
-	e = loop([make('Ip2_McaMat_McaMat_McaPhys')()], [make('Law2_ScGeom_McaPhys_Mca')()], 1.4)
-	stepper = [make('McaTimeStepper')(factor=factor)] if factor else []
-	_yade.scene().engines = [*e[:2], *stepper, make('McaDensity')(volumeRule=rule), e[2], make('McaForces')(), e[3]]
 
 
 def bonded(name, positions, velocities, density=7800.):
@@ -107,7 +100,7 @@ def scene(road, count, kind):
 	if kind == 'fracture': strength.update(fractureStrain=0.02 * windows(count) / WINDOWS, strengthSpread=0.1)  # a few reach it
 	packings.addBodies(p, materials.mcaMat('4340', **strength), velocity=v)
 	if road == 'Law2':
-		ownLoop()
+		O.engines = law2Engines()
 		return None
 	engine = yadeClass('McaEngine')(adaptive=False, sleeping=False)
 	O.engines = [engine]

@@ -8,8 +8,9 @@ import time
 
 import numpy as np
 
-from .. import exact
+from .. import _yade, exact
 from ..packings import Rectangle, addBodies, hexagonal
+from ..scenes import law2Engines
 from . import bench_law
 from .automata_scene import AutomataRun, Bar
 from .automata_scene import material as automataMaterial
@@ -60,7 +61,7 @@ def elasticWave(job):
 			meter, energies = Meter(), None
 		else:
 			s.add('body', p, m, velocity=v)
-			if job['solver'] == 'Law2': bench_law.ownLoop(job['factor'], job['rule'])
+			if job['solver'] == 'Law2': _yade.scene().engines = law2Engines(job['rule'], job['factor'])
 			meter = Meter(s.engine if job['solver'] == 'automata' else None)
 			energies = s.engine.energies if job['solver'] == 'automata' else None
 	built = time.perf_counter() - begin

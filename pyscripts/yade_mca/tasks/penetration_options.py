@@ -45,7 +45,7 @@ SCENE = {
         'friction': (None, dict(type=fraction, metavar='X', help='coefficient between unlinked automata (default: 0.1)')),
         'viscosity': (1., dict(type=positive(float), metavar='X', help='factor on the artificial viscosity')),
         'volume-rule': ('affine', dict(choices=['affine', 'inversePower', 'meanDistance'], help='of the automata')),
-        'dt-factor': (0.3, dict(type=positive(float), metavar='X', help='share of the largest stable time step')),
+        'dt-factor': (0.5, dict(type=positive(float), metavar='X', help='share of the largest stable time step')),
 }
 
 

@@ -41,7 +41,7 @@ def check(args):
 	if args.doc and not os.path.isdir(args.doc):
 		raise registry.UsageError("--doc: folder '%s' does not exist" % args.doc)
 	args.parts = args.parts or list(PARTS)
-	args.mode, args.automata_width, args.width, args.rod_diameter, args.dt_factor = 'coupled', 80., 120., 10., 0.3
+	args.mode, args.automata_width, args.width, args.rod_diameter, args.dt_factor = 'coupled', 80., 120., 10., 0.5
 	options.checkScene(args.thickness, args.spacing, args)
 
 
@@ -117,17 +117,20 @@ def variants(report, args, progress):
 
 
 def width(report, args, progress):
-	jobs = {'coupled': dict(mode='coupled', width=400., ends='fixed'), 'mca': dict(mode='mca', automata_width=400., ends='fixed')}
+	jobs = {'coupled': dict(mode='coupled', width=400., ends='fixed'), 'coupled60': dict(mode='coupled', width=400., automata_width=60., ends='fixed'),
+	        'mca': dict(mode='mca', automata_width=400., ends='fixed')}
 	found = {}
 	for k, o in jobs.items():  # one after the other: their times are compared
 		found.update(do({k: o}, args, progress, 'width 400 mm, ' + k))
 		add(report, 'study/width400/' + k, found[k])
-	if not any(isinstance(f, str) for f in found.values()):
-		ratio = found['mca'][1] / found['coupled'][1]
-		report.add('study/width400/gain', ratio, limit=5., unit='times', passed=ratio >= 5.)
+	if any(isinstance(f, str) for f in found.values()):
+		return
+	for name in ('coupled', 'coupled60'):
+		ratio = found['mca'][1] / found[name][1]
+		report.add('study/width400/gain' + name[7:], ratio, limit=5., unit='times', passed=ratio >= 5.)
 		for t in TIMES:
 			for k in LOSSES:
-				report.add('study/width400/difference/at%dus/%s' % (t, k), abs(found['mca'][0][t, k] - found['coupled'][0][t, k]))
+				report.add('study/width400/difference%s/at%dus/%s' % (name[7:], t, k), abs(found['mca'][0][t, k] - found[name][0][t, k]))
 
 
 def picture(path, spacings, curves):
