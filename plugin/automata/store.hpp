@@ -12,8 +12,8 @@ namespace mca::automata {
 
 constexpr int blockSize = 64;
 constexpr int nLinks    = Lattice<2>::neighbours;
-/// det F0 of the links that measure a volume [-]: three neighbouring links have 0.25, two have 0.083 and measure none
-constexpr double minVolume = 0.12;
+/// det F0 of the links that measure a volume [-]: three in a row or a star have 0.25; three with a gap have 0.17, two have 0.083 and measure none
+constexpr double minVolume = 0.2;
 /// place of link k of automaton i in the link arrays
 inline size_t linkSlot(size_t i, int k) { return ((i / blockSize) * nLinks + k) * blockSize + i % blockSize; }
 

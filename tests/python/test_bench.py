@@ -61,7 +61,8 @@ def test_recordOfATinyRun(plugin, case, solver, n, options):
 	assert r['steps'] > 0 and r['stepping'] > 0 and r['memory'] > 50 and (r['automata'] > 0) == (solver != 'grid') and (r['cells'] > 0) == (solver in ('grid', 'coupled'))
 	spent = sum(v for v in r['phasesPerStep'].values()) * r['steps'] * 1e-9
 	assert spent == pytest.approx(r['stepping'], rel=1e-9)  # no time is lost between the phases
-	assert all(math.isfinite(v) and v > -1 for v in r['phases'].values()), r['phases']
+	# the rest is below zero where the processor time is less than the timers say: other processes had the processor inside a phase
+	assert all(math.isfinite(v) and (v > -1 or k == 'rest') for k, v in r['phases'].items()), r['phases']
 	if case in ('elasticWave', 'plasticShock'): assert 0 < r['error'] < 0.3 and 0 <= r['energyError'] < 0.05
 	if solver in ('automata', 'coupled', 'McaEngine'): assert r['phases']['density'] > 0 and r['phases']['integration'] > 0
 	if solver in ('grid', 'coupled'): assert r['phases']['cells'] > 0
