@@ -13,6 +13,7 @@ import numpy as np
 
 from . import penetration_options as options, penetration_report as results, registry
 from .cli import positive
+from .report import Report
 from .table1 import runAll
 
 SUMMARY = registry.SUMMARIES['study']
@@ -176,7 +177,9 @@ def run(args, report, progress):
 		from . import penetration_doc
 		print('made from', ', '.join(penetration_doc.write(args.doc)) or 'nothing')
 		return
-	for part in args.parts:
-		{'convergence': convergence, 'seeds': seeds, 'options': variants, 'width': width}[part](report, args, progress)
-	if args.out:
-		report.write(os.path.join(args.out, 'study-%s.json' % '-'.join(args.parts)))
+	for part in args.parts:  # a report of its own each, for its file and its time
+		own = Report('study ' + part)
+		{'convergence': convergence, 'seeds': seeds, 'options': variants, 'width': width}[part](own, args, progress)
+		if args.out: own.write(os.path.join(args.out, 'study-%s.json' % part))
+		report.cases += own.cases
+		report.extra.update(own.extra)
