@@ -125,8 +125,14 @@ namespace {
 			const double Jn  = off > 0. ? off * det + rest[l] : 1. / (1. + c);
 			const double Jo = init ? Jn : J[l], eps = Jn - 1.;
 			dTheta[l]      = 2. * (Jn - Jo) / (Jn + Jo);
-			const double p = mie ? pressureWithWork(eos, eps, Jn - Jo, P[l], heat[l]) : pressure(eos, eps);
-			J[l]           = Jn;
+			double p = pressure(eos, eps);
+			if (mie) { // contacts push by the cold curve alone: so does an automaton without links work, and its internal energy keeps the rest
+				double       e = heat[l];
+				const double hot = pressureWithWork(eos, eps, Jn - Jo, P[l], e), work = 0.5 * (P[l] + p) * (Jn - Jo) * invRho;
+				heat[l] = off > 0. ? e : heat[l] - work;
+				p       = off > 0. ? hot : p;
+			}
+			J[l] = Jn;
 			P[l]           = p;
 			const double a = off * scale * p * cell[l]; // push on link k: a cof(F) e_k
 			txx[l] = a * Fyy, txy[l] = -a * Fyx, tyx[l] = -a * Fxy, tyy[l] = a * Fxx;

@@ -159,11 +159,14 @@ void Solver::settleVolumes()
 		if (options.account && holds) sums.fracture += affine ? stateEnergy(i, Jc) : 0.;
 		if (options.account && !holds && !heat) sums.fracture += stateEnergy(i, J);
 		if (holds) continue;
+		// what the contacts' own volume (5) had stored is from now on part of the internal energy
+		if (heat && affine) S.heat[i] += stateEnergy(i, Jc) / (S.cell[i] * S.materials[S.species[S.speciesOf(i)].material].eos.rho0);
 		for (int k = 0; k < nLinks; k++) // stresses go on
 			S.s[linkSlot(i, k)] *= Jc / S.J[i], S.tau[linkSlot(i, k)] *= Jc / S.J[i];
 		for (size_t c = first; c < last; c++)
 			contacts.s[c] *= Jc / S.J[i], contacts.tau[c] *= Jc / S.J[i];
 		S.J[i] = Jc;
+		if (heat && affine) S.P[i] = pressure(S.materials[S.species[S.speciesOf(i)].material].eos, Jc - 1.); // that of its contacts
 	}
 	unsettled.clear();
 }

@@ -124,6 +124,10 @@ void McaDensity::settleVolumes(bool account)
 		if (account && holds) fracture += affine ? stateEnergy(r, Jc) : 0.;
 		if (account && !holds && !r.material->eos.mieGrueneisen) fracture += stateEnergy(r, J); // else it is in the heat
 		if (holds) continue;
+		if (affine && r.material->eos.mieGrueneisen) { // what the contacts' own volume (5) had stored is from now on part of the internal energy
+			r.m->dissipated += stateEnergy(r, Jc) / (r.l->cell * r.material->eos.rho0);
+			r.m->pressure = mca::pressure(r.material->eos, Jc - 1.);
+		}
 		for (const Side& s : r.link) // stresses go on
 			if (s.p) s.p->s[s.side] *= Jc / now, s.p->tau[s.side] *= Jc / now;
 		for (int c = r.firstContact; c < r.lastContact; c++) {

@@ -79,7 +79,11 @@ void McaDensity::volume(Row& r, bool withContacts)
 	}
 	const Real eps = Jn - 1.;
 	l.dTheta       = 2. * (Jn - Jo) / (Jn + Jo);
-	const Real P   = eos.mieGrueneisen ? mca::pressureWithWork(eos, eps, Jn - Jo, r.m->pressure, r.m->dissipated) : mca::pressure(eos, eps);
+	Real P         = mca::pressure(eos, eps);
+	if (eos.mieGrueneisen) { // contacts push by the cold curve alone: so does an automaton without links work, and its internal energy keeps the rest
+		if (!affine || l.offset > 0) P = mca::pressureWithWork(eos, eps, Jn - Jo, r.m->pressure, r.m->dissipated);
+		else r.m->dissipated -= 0.5 * (r.m->pressure + P) * (Jn - Jo) / eos.rho0;
+	}
 	r.m->volumeRatio = Jn, r.m->pressure = P;
 	r.clampedNow  = mca::clamped(eos, eps);
 	r.bad         = !(Jn > 0. && Jn < 1e6);

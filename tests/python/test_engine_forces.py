@@ -144,3 +144,18 @@ def test_forceThatIsNotFiniteNamesTheBodyAndNothingMoves(plugin, tmp_path):
 	O.forces.setPermF(int(ids[7]), (0, 0, 0))
 	O.run(5, True)
 	assert np.isfinite(scene.states(ids)).all()
+
+
+def test_hotDebrisKeepsTheSumOfEnergies(plugin):
+	"""Mie-Grueneisen, links break: what contacts had stored goes into the internal energy, and automata without links do the work their contacts do."""
+	from yade import O
+	from yade_mca import McaEngine
+	scene.impact(speed=2500., n=12, constants=dict(scene.HARD, eos='mieGruneisen', viscosityLinear=0.25, viscosityQuadratic=1.5))
+	e = McaEngine(account=True, dtFactor=0.2)
+	O.engines = [e]
+	O.run(1, True)
+	first = e.energies()
+	O.run(1600, True)
+	now = e.energies()
+	assert e.counters()['brokenLinks'] > 500
+	assert abs(now['total'] - first['total']) < 0.006 * first['kinetic'], now['total'] / first['total'] - 1
