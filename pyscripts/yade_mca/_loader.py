@@ -10,7 +10,7 @@ import sys
 import types
 import zlib
 
-from yade_mca import _elf
+from yade_mca import _elf, _omega
 
 REINSTALL_YADE = 'apt-get install --reinstall yade libyade=2023.02a-1'
 REBUILD = 'delete the folder build and run pyscripts/setup, or reinstall the package yade-mca'
@@ -164,3 +164,4 @@ def publish(classes, package):
 		for module in (yade, yade.utils, builtins):
 			setattr(module, name, cls)
 	yade.system._allSerializables |= set(classes)
+	_omega.mend(yade.wrapper.Omega, yade.wrapper.McaSolverEngine)
