@@ -34,7 +34,7 @@ void Solver::inheritState(const Solver& old)
 {
 	Store&       S = store;
 	const Store& O = old.store;
-	sums = old.sums, counters = old.counters, time = old.time, lastDt = old.lastDt, lastMove = old.lastMove, lastSort = old.lastSort, dtLimit = old.dtLimit;
+	sums = old.sums, counters = old.counters, time = old.time, lastDt = old.lastDt, lastMove = old.lastMove, lastSort = old.lastSort, dtLimit = old.dtLimit, filterTime = old.filterTime;
 	for (size_t i = 0; i < S.size(); i++) {
 		const int64_t o = S.id[i] < 0 ? -1 : indexIn(old, S.id[i]);
 		if (o < 0) continue;

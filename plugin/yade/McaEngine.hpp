@@ -110,7 +110,7 @@ private:
 
 	// bodies (McaEngineBodies.cpp)
 	struct Change;
-	shared_ptr<Scene> homeOrPresent() const;
+	bool              standsIn(const Scene& scene) const; ///< in its O.engines
 	shared_ptr<Scene> myScene(const char* call) const;
 	void              settleIn(Scene* scene);
 	bool              isMine(int id) const { return solver && solver->indexOf(id) >= 0; }

@@ -51,11 +51,9 @@ namespace {
 	}
 }
 
-/// Scene of the bodies; before there is one, the present scene.
-shared_ptr<Scene> McaEngine::homeOrPresent() const
+bool McaEngine::standsIn(const Scene& scene) const
 {
-	if (auto s = home.lock()) return s;
-	return Omega::instance().getScene();
+	return std::any_of(scene.engines.begin(), scene.engines.end(), [&](const shared_ptr<Engine>& e) { return e.get() == this; });
 }
 
 shared_ptr<Scene> McaEngine::myScene(const char* call) const
@@ -70,9 +68,7 @@ void McaEngine::settleIn(Scene* scene)
 {
 	const auto now = home.lock();
 	if (now && now.get() == scene) return;
-	if (now)
-		for (const auto& e : now->engines)
-			if (e.get() == this) throw mca::Error("McaEngine: this engine stands in O.engines of another scene, too, whose automata it moves; make one for each scene.");
+	if (now && standsIn(*now)) throw mca::Error("McaEngine: this engine stands in O.engines of another scene, too, whose automata it moves; make one for each scene.");
 	const auto present = Omega::instance().getScene();
 	if (present.get() != scene) throw mca::Error("McaEngine: it runs in a scene that is not the present one.");
 	const bool loaded = solver && bodies.empty() && !order.empty() && home.expired();
@@ -92,15 +88,15 @@ void McaEngine::bind(Scene* scene)
 {
 	vector<shared_ptr<Body>> found;
 	for (int id : order) {
-		if (!scene->bodies->exists(id) || !isAutomaton(scene->bodies->body[size_t(id)]) || !castTo<McaState>(scene->bodies->body[size_t(id)]->state.get()))
-			throw mca::Error("McaEngine: the saved engine moves body " + std::to_string(id) + ", which the saved scene does not have as an automaton (material McaMat, shape Sphere, state McaState); the file is damaged or was changed.");
 		if (solver->indexOf(id) < 0) throw mca::Error("McaEngine: body " + std::to_string(id) + " stands in the saved engine's list, but not in its state; the file is damaged or was changed.");
-		found.push_back(scene->bodies->body[size_t(id)]);
+		found.push_back(scene->bodies->exists(id) ? scene->bodies->body[size_t(id)] : nullptr); // erased since it was loaded
+		if (found.back() && (!isAutomaton(found.back()) || !castTo<McaState>(found.back()->state.get())))
+			throw mca::Error("McaEngine: the saved engine moves body " + std::to_string(id) + ", which is no automaton (material McaMat, shape Sphere, state McaState); the file is damaged, or the body was changed since it was loaded.");
 	}
 	known.assign(solver->store.materials.size(), nullptr);
 	const Store& S = solver->store;
 	for (size_t q = 0; q < order.size(); q++)
-		known[size_t(S.species[size_t(S.speciesOf(size_t(solver->indexOf(order[q]))))].material)] = found[q]->material;
+		if (found[q]) known[size_t(S.species[size_t(S.speciesOf(size_t(solver->indexOf(order[q]))))].material)] = found[q]->material;
 	bodies = found;
 	same.resize(order.size());
 	for (size_t q = 0; q < order.size(); q++)
@@ -114,8 +110,8 @@ void McaEngine::remember(size_t q)
 {
 	const Store& S = solver->store;
 	const size_t i = size_t(solver->indexOf(order[q]));
-	const State& s = *bodies[q]->state;
-	same[q]        = { Vector3r(S.x[i], S.y[i], s.se3.position[2]), Vector3r(S.vx[i], S.vy[i], 0), S.omega[i], S.angle[i], S.eqps[i], S.temperature[i], S.P[i], S.J[i] };
+	const Real   z = bodies[q] && bodies[q]->state ? bodies[q]->state->se3.position[2] : 0.;
+	same[q]        = { Vector3r(S.x[i], S.y[i], z), Vector3r(S.vx[i], S.vy[i], 0), S.omega[i], S.angle[i], S.eqps[i], S.temperature[i], S.P[i], S.J[i] };
 }
 
 void McaEngine::gather(Scene* scene)
@@ -136,7 +132,7 @@ void McaEngine::gather(Scene* scene)
 	}
 	std::unordered_set<const Body*> mine;
 	for (const auto& b : bodies)
-		mine.insert(b.get());
+		if (b) mine.insert(b.get());
 	McaBodies now(*scene, seed);
 	vector<shared_ptr<Body>> list;
 	for (auto& a : now.automata) {
@@ -175,7 +171,7 @@ void McaEngine::gather(Scene* scene)
 	same.resize(order.size());
 	for (size_t q = 0; q < order.size(); q++)
 		remember(q);
-	stale = true; // numbers of links and the like, which follow from who is there
+	writeBodies(scene); // numbers of links and the like follow from who is there
 }
 
 void McaEngine::ensureBuilt(Scene* scene)
@@ -200,6 +196,7 @@ void McaEngine::ensureBuilt(Scene* scene)
 bool McaEngine::sameBodies(const Scene& scene) const
 {
 	size_t q = 0;
+	if (std::any_of(bodies.begin(), bodies.end(), [](const shared_ptr<Body>& b) { return !b; })) return false;
 	for (const auto& b : scene.bodies->body) {
 		if (q < bodies.size() && b.get() == bodies[q].get() && b) {
 			if (!isAutomaton(b)) refuse(*b, "it is an automaton no more (its material or shape was replaced); erase it and add another body instead.");
@@ -226,6 +223,7 @@ vector<McaEngine::Change> McaEngine::changes(bool& rebuild) const
 	vector<Change> list;
 	const Store&   S = solver->store;
 	for (size_t q = 0; q < order.size(); q++) {
+		if (!bodies[q]) continue;
 		const Body&  b = *bodies[q];
 		const auto*  m = b.state ? castTo<const McaState>(b.state.get()) : nullptr;
 		if (!m) refuse(b, "its state was replaced by one that is no McaState; make it with material.newAssocState().");
@@ -281,12 +279,13 @@ void McaEngine::apply(const vector<Change>& list)
 		const Body&  b = *bodies[c.place];
 		const auto&  s = static_cast<const McaState&>(*b.state);
 		const size_t i = size_t(solver->indexOf(order[c.place])); // sorting may have moved it
-		if (c.position) S.x[i] = s.se3.position[0], S.y[i] = s.se3.position[1];
-		if (c.velocity) S.vx[i] = s.vel[0], S.vy[i] = s.vel[1];
-		if (c.spin) S.omega[i] = s.angVel[2];
-		if (c.angle) S.angle[i] = 2. * std::atan2(s.se3.orientation.z(), s.se3.orientation.w());
-		if (c.plasticStrain) S.eqps[i] = s.plasticStrain;
-		if (c.temperature) S.temperature[i] = s.temperature;
+		Same&        now = same[c.place];
+		if (c.position) now.pos = s.se3.position, S.x[i] = now.pos[0], S.y[i] = now.pos[1];
+		if (c.velocity) now.vel = s.vel, S.vx[i] = s.vel[0], S.vy[i] = s.vel[1];
+		if (c.spin) S.omega[i] = now.spin = s.angVel[2];
+		if (c.angle) S.angle[i] = now.angle = 2. * std::atan2(s.se3.orientation.z(), s.se3.orientation.w());
+		if (c.plasticStrain) S.eqps[i] = now.plasticStrain = s.plasticStrain;
+		if (c.temperature) S.temperature[i] = now.temperature = s.temperature;
 		if (c.strength) S.strength[i] = s.strength;
 		if (c.mask) S.group[i] = b.groupMask;
 		if (c.blocked) {
@@ -294,8 +293,6 @@ void McaEngine::apply(const vector<Change>& list)
 			S.ay[i] = s.blockedDOFs & State::DOF_Y ? 0. : 1. / S.mass[i];
 			S.ar[i] = s.blockedDOFs & State::DOF_RZ ? 0. : 1. / S.inertia[i];
 		}
-		remember(c.place);
-		same[c.place].pos = s.se3.position;
 	}
 	if (motion) {
 		solver->moved();
@@ -312,8 +309,10 @@ void McaEngine::adoptChanges(Scene* scene)
 	rebuild |= !sameMaterials();
 	apply(list);
 	if (!set && !rebuild) return;
-	if (stale) writeBodies(scene); // the others are gathered from what they hold
+	if (!forcesReady) solver->computeForces(); // the strain of the last step belongs to those that made it
+	if (stale) writeBodies(scene);             // the others are gathered from what they hold
 	gather(scene);
+	if (solver->counters.steps > 0) solver->moved();
 }
 
 void McaEngine::writeBodies(Scene* scene)
@@ -324,7 +323,7 @@ void McaEngine::writeBodies(Scene* scene)
 	for (long q = 0; q < n; q++) {
 		const auto&  b = bodies[size_t(q)];
 		const size_t i = size_t(solver->indexOf(order[size_t(q)]));
-		if (!b->state) continue; // told by the next step
+		if (!b || !b->state) continue; // erased since loading; told by the next step
 		State& s = *b->state;
 		if (stale && (s.se3.position != same[size_t(q)].pos || s.vel != same[size_t(q)].vel || s.angVel[2] != same[size_t(q)].spin)) lost = b->id;
 		s.se3.position[0] = S.x[i], s.se3.position[1] = S.y[i];

@@ -42,9 +42,16 @@ void McaEngine::preSave(McaEngine&)
 	locked([&] {
 		state.clear();
 		bodiesSaved = true;
+		const auto scene = Omega::instance().getScene();
+		if (solver && standsIn(*scene)) {
+			settleIn(scene.get());
+			try { // what a script has changed counts in the file, too; what is refused will be refused again
+				if (looked && solver) ensureBuilt(scene.get());
+			} catch (const std::exception&) {
+			}
+			if (solver && stale) writeBodies(scene.get()); // engines are saved before bodies
+		}
 		if (!solver) return;
-		if (const auto scene = home.lock())
-			if (stale) writeBodies(scene.get()); // engines are saved before bodies
 		const string bytes = solver->save();
 		state.put(bytes.data(), bytes.size());
 	});
@@ -68,10 +75,8 @@ void McaEngine::postLoad(McaEngine&)
 template <class F> auto McaEngine::read(F&& f)
 {
 	return locked([&] {
-		if (!solver || (bodies.empty() && !order.empty())) {
-			const auto scene = homeOrPresent();
-			if (!solver) ensureBuilt(scene.get());
-		}
+		const auto present = Omega::instance().getScene();
+		if (!solver || (looked && standsIn(*present))) ensureBuilt(present.get());
 		return f();
 	});
 }

@@ -22,6 +22,10 @@ Real McaGridEngine::criticalTimeStep() const { return solver && solver->blocks()
 void McaGridEngine::computeForces(Scene* s)
 {
 	grid().setThreads(ompThreads);
+	if (solver->between()) { // something has stopped the step half-way: it is finished as it was begun
+		s->dt = solver->stepBegun();
+		return;
+	}
 	solver->computeForces(s->dt);
 }
 
