@@ -89,8 +89,8 @@ def mayMakeRoots():
 class Root:
 	"""A root of one release in which `owner` has the tree. Use as a context manager: what it mounts it unmounts."""
 
-	def __init__(self, suite, owner):
-		self.suite, self.owner = suite, owner
+	def __init__(self, suite, owner, ccache=None):
+		self.suite, self.owner, self.ccache = suite, owner, ccache
 		self.name = '%s %s' % (suite, owner)
 		self.path = ROOTS / ('%s-%s' % (suite, owner))
 		self.home = {'root': '/root', 'anna': '/home/anna'}
@@ -119,10 +119,15 @@ class Root:
 			shutil.copy('/etc/' + name, self.path / 'etc' / name)
 		(self.path / 'usr/sbin/policy-rc.d').write_text('#!/bin/sh\nexit 101\n')  # no service of a package starts in here
 		(self.path / 'usr/sbin/policy-rc.d').chmod(0o755)
-		for command in (('mount', '-t', 'proc', 'proc', '/proc'), ('mount', '--rbind', '/dev', '/dev'), ('mount', '--make-rslave', '/dev')):
+		mounts = [('mount', '-t', 'proc', 'proc', '/proc'), ('mount', '--rbind', '/dev', '/dev'), ('mount', '--make-rslave', '/dev')]
+		if self.ccache:
+			(self.path / 'ccache').mkdir()
+			mounts.append(('mount', '--bind', self.ccache, '/ccache'))
+		for command in mounts:
 			done = output(*command[:-1], str(self.path) + command[-1])
 			if done.returncode: raise Skipped('%s: %s' % (' '.join(command), done.stdout.strip()))
-		say('%-14s %7.1f s  a bare root' % (self.name, time.time() - start))
+		if self.ccache: self.shell('root', 'apt-get update && apt-get install -y --no-install-recommends ccache && chmod -R a+rwX /ccache', '/')
+		say('%-14s %7.1f s  a bare root%s' % (self.name, time.time() - start, ' with ccache' if self.ccache else ''))
 
 	def clone(self, script):
 		where = Path(str(self.path) + self.tree)
@@ -136,6 +141,9 @@ class Root:
 	def shell(self, user, command, folder, limit=1800):
 		"""(status, output) of a command typed by `user` in `folder`."""
 		environment = ['HOME=' + self.home[user], 'USER=' + user, 'LANG=C.UTF-8', 'TERM=dumb', 'PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin']
+		if self.ccache:
+			environment += ['CMAKE_CXX_COMPILER_LAUNCHER=ccache', 'CCACHE_DIR=/ccache', 'CCACHE_UMASK=000', 'CCACHE_NOHASHDIR=1', 'CCACHE_BASEDIR=' + os.path.dirname(self.tree),
+			                'CCACHE_SLOPPINESS=pch_defines,time_macros']
 		if self.ending: raise Broken('interrupted')
 		number = '0:0' if user == 'root' else '1000:1000'
 		full = ['chroot', '--userspec=' + number, '--groups=' + number.split(':')[0], str(self.path), '/usr/bin/env', '-i', *environment, 'bash', '-c', 'cd %s && %s' % (folder, command)]
@@ -221,6 +229,7 @@ def main():
 	parser = argparse.ArgumentParser(prog='tests/run clean', description=__doc__.split('\n')[0])
 	parser.add_argument('suite', nargs='*', help='releases; default: %s; %s as a warning' % (', '.join(SUITES), ', '.join(WARNING)))
 	parser.add_argument('--owner', choices=['root', 'anna'], help='who owns the tree and builds: root, or a user with sudo (default: %s)' % ', '.join('%s in %s' % (o, s) for s, o in SUITES.items()))
+	parser.add_argument('--ccache', metavar='FOLDER', help='keep what is compiled in this folder: shorter, but ccache is on the machine then')
 	options = parser.parse_args()
 	for suite in options.suite:
 		if suite not in SUITES and suite not in WARNING: parser.error("no release '%s'; there are %s" % (suite, ', '.join([*SUITES, *WARNING])))
@@ -230,7 +239,7 @@ def main():
 		mayMakeRoots()
 		commands, script = readme((TREE / 'README.md').read_text())
 		if output('git', '-C', str(TREE), 'status', '--porcelain', '--untracked-files=no').stdout: say('the tree has changes that are not committed and so not in the clones')
-		roots = [Root(suite, options.owner or SUITES.get(suite, 'root')) for suite in options.suite or SUITES]
+		roots = [Root(suite, options.owner or SUITES.get(suite, 'root'), options.ccache) for suite in options.suite or SUITES]
 		with contexts(roots), concurrent.futures.ThreadPoolExecutor(len(roots)) as pool:
 			try:
 				problems = list(pool.map(attempt, [(visit, root, commands, script) for root in roots]))
