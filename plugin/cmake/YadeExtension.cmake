@@ -46,11 +46,15 @@ target_link_options(mca_yade_abi INTERFACE -Wl,--no-as-needed -Wl,--allow-shlib-
 target_link_libraries(
 	mca_yade_abi INTERFACE Eigen3::Eigen OpenMP::OpenMP_CXX pkg_dem pkg_common yade Boost::python Boost::serialization python${MCA_YADE_PYTHON})
 
+# Boost and Eigen are most of the compiler's work: several sources at once share it. -DMCA_UNITY=OFF compiles each alone, to see that no source leans on another.
+option(MCA_UNITY "compile several sources of the extension at once" ON)
+
 # registration and guard, once for all extensions
 get_property(sdk GLOBAL PROPERTY MCA_SDK_SOURCES)
 add_library(mca_sdk OBJECT ${sdk} ${helpers})
 target_link_libraries(mca_sdk PRIVATE mca_yade_abi)
-# Boost and Eigen are most of the compiler's work; only their headers, so that no source leans on an include of another
+set_target_properties(mca_sdk PROPERTIES UNITY_BUILD ${MCA_UNITY} UNITY_BUILD_BATCH_SIZE 5)
+# only headers of Boost and Eigen, so that no source leans on an include of another
 target_precompile_headers(
 	mca_sdk PRIVATE <boost/python.hpp> <Eigen/Core> <Eigen/Geometry> <boost/archive/binary_iarchive.hpp> <boost/archive/binary_oarchive.hpp>
 	<boost/archive/xml_iarchive.hpp> <boost/archive/xml_oarchive.hpp> <boost/serialization/export.hpp> <boost/serialization/shared_ptr.hpp>
@@ -65,7 +69,7 @@ function(mca_add_extension name)
 	set_target_properties(
 		${name} PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY "${MCA_LIB_DIR}" BUILD_RPATH "$ORIGIN;${MCA_YADE_LIBDIR}" INSTALL_RPATH
 				   "$ORIGIN;${MCA_YADE_LIBDIR}")
-	set_property(TARGET ${name} PROPERTY BUILD_WITH_INSTALL_RPATH ON)
+	set_target_properties(${name} PROPERTIES BUILD_WITH_INSTALL_RPATH ON UNITY_BUILD ${MCA_UNITY} UNITY_BUILD_BATCH_SIZE 5)
 endfunction()
 
 # mca_add_manifest(targets...): sizes, checksums and identities of the libraries, for the loader
