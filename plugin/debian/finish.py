@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""finish.py ROOT SOURCE VERSION YADE_LIBDIR MAINTAINER: makes a staged installation ready for a package: libraries stripped, manifest of what is installed,
+"""finish.py ROOT SOURCE VERSION YADE_LIBDIR MAINTAINER PACKAGE_VERSION SUITE: makes a staged installation ready for a package: libraries stripped, manifest of what is installed,
 manual pages and change log compressed, permissions."""
 import glob
 import gzip
@@ -14,7 +14,7 @@ def compressed(path, data):
 		f.write(gzip.compress(data, 9, mtime=0))
 
 
-def main(root, source, version, yadeLibDir, maintainer):
+def main(root, source, version, yadeLibDir, maintainer, packageVersion, suite):
 	lib = os.path.join(root, 'lib/python3/dist-packages/yade_mca/lib')
 	for path in glob.glob(os.path.join(lib, '**', '*.so'), recursive=True):
 		subprocess.run(['strip', '--strip-unneeded', '--remove-section=.comment', '--remove-section=.note', path], check=True)
@@ -25,7 +25,7 @@ def main(root, source, version, yadeLibDir, maintainer):
 	compressed(os.path.join(root, 'share/man/man1/yade-mca-batch.1.gz'), b'.so man1/yade-mca.1\n')
 	date = subprocess.run(['git', '-C', source, 'log', '-1', '--format=%aD'], capture_output=True, text=True).stdout.strip() or 'Thu, 01 Jan 2026 00:00:00 +0000'
 	compressed(os.path.join(root, 'share/doc/yade-mca/changelog.gz'),
-	           ('yade-mca (%s) bookworm; urgency=medium\n\n  * See plugin/CHANGELOG.md of the sources.\n\n -- %s  %s\n' % (version, maintainer, date)).encode())
+	           ('yade-mca (%s) %s; urgency=medium\n\n  * See plugin/CHANGELOG.md of the sources.\n\n -- %s  %s\n' % (packageVersion, suite, maintainer, date)).encode())
 	for folder, _, names in os.walk(root):
 		os.chmod(folder, 0o755)
 		for name in names:

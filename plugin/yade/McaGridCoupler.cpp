@@ -23,7 +23,7 @@ namespace {
 		}
 		return found;
 	}
-	mca::grid::Side sideOf(const string& name)
+	mca::grid::Side tiedSide(const string& name)
 	{
 		if (name == "bottom") return mca::grid::Side::bottom;
 		if (name == "right") return mca::grid::Side::right;
@@ -110,7 +110,7 @@ void McaGridCoupler::makeRow(Scene* scene)
 	mca::grid::Grid&                  g = foundGrid->grid();
 	const mca::grid::OpenNodes&       n = g.open();
 	mca::interface::SideNodes         s;
-	s.node              = g.sideNodes(block, sideOf(side), start, end);
+	s.node              = g.sideNodes(block, tiedSide(side), start, end);
 	const auto& b       = g.block(block);
 	s.block             = b.options.name;
 	s.material          = &b.material;

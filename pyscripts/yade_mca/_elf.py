@@ -26,3 +26,21 @@ def buildId(path):
 	head = _header(path)
 	at = head.find(b'\x04\0\0\0\x14\0\0\0\x03\0\0\0GNU\0')  # name of 4 bytes, 20 bytes, type build-id
 	return head[at + 16:at + 36].hex() if at > 0 else ''
+
+
+def needed(path):
+	"""Names of the libraries that a library asks for (its NEEDED entries), in their order. Raises ValueError when it is damaged."""
+	with open(path, 'rb') as file:
+		data = file.read()
+	_header(path)
+	programs, = struct.unpack_from('<Q', data, 32)
+	size, count = struct.unpack_from('<HH', data, 54)
+	segments = [struct.unpack_from('<IIQQQQ', data, programs + n * size) for n in range(count)]  # type, flags, offset, address, -, bytes in the file
+	try:
+		start, length = next((s[2], s[5]) for s in segments if s[0] == 2)
+		entries = [struct.unpack_from('<QQ', data, at) for at in range(start, start + length, 16)]
+		address = next(value for tag, value in entries if tag == 5)  # of the strings
+		strings = next(s[2] + address - s[3] for s in segments if s[0] == 1 and s[3] <= address < s[3] + s[5])
+		return [data[strings + value:data.index(b'\0', strings + value)].decode() for tag, value in entries if tag == 1]
+	except (StopIteration, struct.error) as e:
+		raise ValueError('%s has no table of the libraries it needs' % path) from e

@@ -7,12 +7,12 @@ import json
 import os
 import shutil
 import sys
+import tempfile
 import types
 import zlib
 
 from yade_mca import _elf, _omega
 
-REINSTALL_YADE = 'apt-get install --reinstall yade libyade=2023.02a-1'
 REBUILD = 'delete the folder build and run pyscripts/setup, or reinstall the package yade-mca'
 
 
@@ -26,11 +26,19 @@ def refuse(what, remedy):
 	raise ImportError('yade_mca: %s. What to do: %s' % (what, remedy)) from None
 
 
+def installYade(manifest, option=''):
+	"""The command that brings the YADE the plugin was built for."""
+	version = manifest.get('yadePackage')
+	return 'apt-get install %s%s' % (option, 'yade=%s libyade=%s' % (version, version) if version else 'yade (version %s)' % manifest['yade'])
+
+
 def libraryFolder():
-	"""Folder of the compiled part: $YADE_MCA_LIB, or lib/ inside this package (installed), or the build folder of the source tree."""
+	"""Folder of the compiled part: $YADE_MCA_LIB, or in $YADE_MCA_BUILD, or lib/ inside this package (installed), or the build folder of the source tree."""
 	here = os.path.dirname(os.path.abspath(__file__))
 	given = os.environ.get('YADE_MCA_LIB')
+	build = os.environ.get('YADE_MCA_BUILD')
 	candidates = [given] if given else [os.path.join(here, 'lib'), os.path.join(here, '..', '..', 'build', 'yade_mca_lib')]
+	if build and not given: candidates.insert(0, os.path.join(build, 'yade_mca_lib'))
 	for folder in candidates:
 		if os.path.exists(os.path.join(folder, 'manifest.json')):
 			return os.path.abspath(folder)
@@ -51,7 +59,7 @@ def checkPython(manifest):
 	if found != manifest['python']:
 		refuse(
 		        'this is Python %s (%s), the plugin and YADE are for %s' % (found, sys.executable, manifest['python']),
-		        'use /usr/bin/python3, or run the script with yade or yade-mca'
+		        'use /usr/bin/python3, or run the script with yade or yade-mca; after an upgrade of the system run pyscripts/setup'
 		)
 
 
@@ -73,26 +81,35 @@ def checkYadeLibraries(manifest):
 	if 'yade.config' in sys.modules:
 		config = sys.modules['yade.config']
 		folder = config.libDir
-		if config.version != manifest['yade']: refuse('this is YADE %s, the plugin is for %s' % (config.version, manifest['yade']), 'apt-get install yade=2023.02a-1')
+		if config.version != manifest['yade']: refuse('this is YADE %s, the plugin is for %s' % (config.version, manifest['yade']), '%s; or rebuild the plugin here (pyscripts/setup)' % installYade(manifest))
 		# the builds of other precision have other features but also another suffix
 		if not os.path.basename(folder.rstrip('/')).endswith('-double'):
 			refuse('this YADE (%s) is not the double precision build' % folder, 'start `yade` or `yade-mca`, not yade-longdouble, yade-float128 or yade-mpfr150')
-	if not os.path.exists(os.path.join(folder, 'libyade.so')): refuse('YADE is not installed (no libyade.so in %s)' % folder, 'apt-get install yade=2023.02a-1')
+	if not os.path.exists(os.path.join(folder, 'libyade.so')): refuse('YADE is not installed (no libyade.so in %s)' % folder, installYade(manifest))
 	for name, known in manifest['yadeBuildIds'].items():
 		path = os.path.join(folder, name)
 		try:
 			_elf.checkWhole(path)
 			found = _elf.buildId(path)
 		except (OSError, ValueError) as e:
-			refuse("YADE's own library cannot be used: %s" % e, REINSTALL_YADE)
+			refuse("YADE's own library cannot be used: %s" % e, installYade(manifest, '--reinstall '))
 		if found != known and not os.environ.get('YADE_MCA_OTHER_BUILD'):
 			refuse(
 			        "YADE's library %s is another build (%s) than the one the plugin was built with (%s)" % (path, found or 'no build-id', known),
-			        '%s; or rebuild the plugin here (pyscripts/setup); or set YADE_MCA_OTHER_BUILD=1 to rely on the comparison of classes alone' % REINSTALL_YADE
+			        '%s; or rebuild the plugin here (pyscripts/setup); or set YADE_MCA_OTHER_BUILD=1 to rely on the comparison of classes alone' % installYade(manifest, '--reinstall ')
 			)
 
 
+def setHome():
+	"""YADE's configuration reads $HOME and fails without it, as in a job of cron or a container."""
+	if os.environ.get('HOME'): return
+	os.environ.pop('HOME', None)
+	home = os.path.expanduser('~')  # by the list of users
+	os.environ['HOME'] = home if os.path.isabs(home) else tempfile.gettempdir()
+
+
 def importYade(manifest):
+	setHome()
 	folder, first = os.path.join(manifest['yadeLibDir'], 'py'), 'yade' not in sys.modules
 	if first and folder not in sys.path: sys.path.append(folder)
 	try:
@@ -101,7 +118,7 @@ def importYade(manifest):
 		import yade.wrapper
 	except ImportError as e:
 		if sys.prefix != '/usr': refuse('YADE cannot be imported into %s (%s)' % (sys.executable, e), "use YADE's interpreter, /usr/bin/python3, or start yade or yade-mca")
-		refuse('YADE cannot be imported (%s)' % e, REINSTALL_YADE)
+		refuse('YADE cannot be imported (%s)' % e, installYade(manifest, '--reinstall '))
 	if first: atexit.register(removeTemporaryFolder, os.path.dirname(yade.wrapper.Omega().tmpFilename()), os.getpid())
 
 
@@ -110,7 +127,7 @@ def removeTemporaryFolder(folder, process):
 	if os.getpid() == process: shutil.rmtree(folder, ignore_errors=True)
 
 
-def openExtension(name, path):
+def openExtension(name, path, remedy='install the YADE it was built for'):
 	"""Load the extension module `name` from the file `path`; its guard runs first and raises ImportError when it does not fit."""
 	flags = sys.getdlopenflags()
 	# YADE sets RTLD_GLOBAL for all later imports, with which weak symbols of different plugins would replace each other
@@ -119,7 +136,7 @@ def openExtension(name, path):
 		spec = importlib.machinery.ModuleSpec(name, importlib.machinery.ExtensionFileLoader(name, str(path)), origin=str(path))
 		module = importlib.util.module_from_spec(spec)
 	except ImportError as e:
-		if 'undefined symbol' in str(e): refuse('the YADE in this process lacks a function the plugin needs (%s)' % e, 'apt-get install yade=2023.02a-1 libyade=2023.02a-1')
+		if 'undefined symbol' in str(e): refuse('the YADE in this process lacks a function the plugin needs (%s)' % e, remedy)
 		raise
 	finally:
 		sys.setdlopenflags(flags)
@@ -149,7 +166,7 @@ def load():
 	checkYadeLibraries(manifest)
 	importYade(manifest)
 	checkYadeLibraries(manifest)
-	return openExtension('_yade_mca', os.path.join(folder, '_yade_mca.so')), manifest
+	return openExtension('_yade_mca', os.path.join(folder, '_yade_mca.so'), installYade(manifest)), manifest
 
 
 def publish(classes, package):

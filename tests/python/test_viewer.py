@@ -38,11 +38,14 @@ sys.stdout.flush()
 os._exit(0)
 """
 EDITORS = """
-import os, traceback, sys
+import importlib, os, traceback, sys
 try:
 	import yade_mca
 	from yade import qt
-	from yade.qt.SerializableEditor import SerializableEditor, AttrEditor_Float, AttrEditor_Bool
+	editors = importlib.import_module('yade.qt.SerializableEditor')
+	SerializableEditor = editors.SerializableEditor
+	# since 2025 a number has an editor of its own
+	numbers = tuple(getattr(editors, n) for n in ('AttrEditor_Float', 'AttrEditor_Mpmath') if hasattr(editors, n))
 	for name in yade_mca.classes:
 		thing = getattr(yade_mca, name)()
 		editor = SerializableEditor(thing)
@@ -53,7 +56,7 @@ try:
 		for entry in editor.entries:
 			# typing a number and leaving the field sets the attribute
 			w = entry.widget
-			if isinstance(w, AttrEditor_Float) and not entry.flags & 2:
+			if isinstance(w, numbers) and not entry.flags & 2:
 				old = getattr(thing, entry.name)
 				w.setText('0.75'); w.isHot(); w.update()
 				assert getattr(thing, entry.name) == 0.75, entry.name

@@ -8,7 +8,7 @@ namespace sdk __attribute__((visibility("hidden"))) {
 	{
 		const py::object config  = py::import("yade.config");
 		const string     version = py::extract<string>(config.attr("version"));
-		probe.check(version == "2023.02a", "YADE's version is " + version + ", the plugin is made for 2023.02a");
+		probe.check(version == MCA_YADE_VERSION, "YADE's version is " + version + ", the plugin is made for " MCA_YADE_VERSION);
 		const py::object features = config.attr("features");
 		const auto       has      = [&](const char* name) { return bool(py::extract<bool>(features.attr("__contains__")(name))); };
 		for (const char* name : { "OPENMP", "MPI", "QT5" })
@@ -29,8 +29,8 @@ namespace sdk __attribute__((visibility("hidden"))) {
 			throw std::runtime_error(
 			        "yade_mca does not fit the YADE in this process (" + std::to_string(probe.failed()) + " of " + std::to_string(probe.made())
 			        + " checks failed):\n" + probe.report()
-			        + "What to do: install the package it is made for (apt-get install yade=2023.02a-1 libyade=2023.02a-1), or build the plugin inside your YADE's "
-			          "source tree (patches/README.md).");
+			        + "What to do: install the YADE it is made for (the package yade " MCA_YADE_VERSION "), build the plugin anew with the YADE that is here "
+			          "(pyscripts/setup), or build it inside your YADE's source tree (patches/README.md).");
 		return probe.made();
 	}
 } // namespace sdk

@@ -63,6 +63,9 @@ namespace sdk __attribute__((visibility("hidden"))) {
 		MEMBER(FrictPhys, NormShearPhys, ks, 4.5)
 		MEMBER(FrictPhys, NormShearPhys, shearForce, Vector3r(2 * v))
 		MEMBER(FrictPhys, FrictPhys, tangensOfFrictionAngle, 5.5)
+#if MCA_YADE_NUMBER >= 20260100
+		MEMBER(FrictPhys, FrictPhys, frictDissip, 6.5)
+#endif
 		MEMBER(ScGeom6D, GenericSpheresContact, normal, v)
 		MEMBER(ScGeom6D, GenericSpheresContact, contactPoint, Vector3r(2 * v))
 		MEMBER(ScGeom6D, GenericSpheresContact, refR1, 3.5)

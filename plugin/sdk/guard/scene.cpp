@@ -13,7 +13,7 @@ namespace sdk __attribute__((visibility("hidden"))) {
 			py::object body = wrapper.attr("Body")(), shape = wrapper.attr("Sphere")(), material = wrapper.attr("FrictMat")();
 			body.attr("shape") = shape;
 			body.attr("mat")   = material;
-			const Body&     b  = py::extract<const Body&>(body);
+			const Body&     b  = py::extract<const Body&>(body)();
 			probe.check(b.shape.get() == static_cast<Shape*>(py::extract<Sphere*>(shape)()), "Body.shape is not where the declarations have it");
 			probe.check(b.material.get() == static_cast<Material*>(py::extract<FrictMat*>(material)()), "Body.material is not where the declarations have it");
 			probe.check(probe.isObject(b.state.get(), "State"), "Body.state is not where the declarations have it");

@@ -52,6 +52,10 @@ namespace sdk __attribute__((visibility("hidden"))) {
 		SLOT_CONST(Interaction, Interaction, pyDictCustom, "Ev")
 		INDEX(State)
 		INDEX(Shape)
+#if MCA_YADE_NUMBER >= 20260100
+		SLOT(Shape, Shape, getVolume, "Ev")
+		SLOT(Sphere, Sphere, getVolume, "Ev")
+#endif
 		INDEX(Bound)
 		INDEX(Material)
 		INDEX(IGeom)

@@ -3,6 +3,7 @@
 import argparse
 import difflib
 import os
+import select
 import sys
 import traceback
 
@@ -105,8 +106,15 @@ def setThreads(args):
 		os.execv(sys.executable, [sys.executable, '-m', __package__, *sys.argv[1:]])
 
 
+def readerGone():
+	"""True when what is printed reaches nobody any more (`... | head -1`); then the task ends without a word."""
+	poll = select.poll()
+	poll.register(1, 0)
+	return any(event & select.POLLERR for _, event in poll.poll(0))
+
+
 def main(argv=None):
-	"""Runs a task; returns the status of the process."""
+	"""Runs a task; returns the status of the process. Raises BrokenPipeError when nobody reads what it prints."""
 	try:
 		args, module = parse(sys.argv[1:] if argv is None else argv)
 	except UsageError as e:
@@ -123,6 +131,7 @@ def main(argv=None):
 	except KeyboardInterrupt:
 		report.error = 'interrupted'
 	except Exception as e:
+		if isinstance(e, BrokenPipeError) and readerGone(): raise
 		report.error = '%s: %s' % (type(e).__name__, e)
 		if args.debug:
 			traceback.print_exc()

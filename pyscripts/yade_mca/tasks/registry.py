@@ -15,6 +15,7 @@ TASKS = {
         'check': 'check',
         'docs': 'docs',
         'readme': 'readme',
+        'abi': 'abi',
 }
 SUMMARIES = {
         'penetration': 'a tungsten rod through a steel plate: pictures, losses of speed and length',
@@ -27,6 +28,7 @@ SUMMARIES = {
         'check': 'the examples with coarse settings against the numbers they expect',
         'docs': 'this documentation as HTML',
         'readme': 'tables and pictures of README.md from the results of other tasks',
+        'abi': 'what an installed YADE of any version has other than the plugin declares',
 }
 #: parts of `verify`, in the order in which `all` runs them; part -> module
 PARTS = {'automata': 'verify_automata', 'grid': 'verify_grid', 'interface': 'verify_interface'}

@@ -22,7 +22,18 @@ public:
 	EnergyTracker();
 	virtual ~EnergyTracker();
 	YADE_SDK_STOCK_CLASS
-	void findId(const std::string& name, int& id, bool reset, bool newIfNotFound = true);
+	// the library's own findId is not exported from 2026.1.0 on; setItem_py makes the entry
+	void findId(const std::string& name, int& id, bool reset, bool newIfNotFound = true)
+	{
+		auto found = names.find(name);
+		if (found == names.end()) {
+			if (!newIfNotFound) return;
+			setItem_py(name, 0.);
+			found = names.find(name);
+			resetStep[size_t(found->second)] = reset;
+		}
+		id = found->second;
+	}
 	Real getItem_py(const std::string& name);
 	void setItem_py(const std::string& name, Real value);
 	Real total() const;

@@ -16,6 +16,9 @@ public:
 	Shape()                                    = default;
 	virtual ~Shape();
 	YADE_SDK_STOCK_CLASS
+#if MCA_YADE_NUMBER >= 20260100
+	virtual Real getVolume(); // 12
+#endif
 	YADE_SDK_STOCK_INDEX_ROOT
 };
 } // namespace yade

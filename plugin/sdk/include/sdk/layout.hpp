@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Sizes and offsets of the stock package, found in its machine code; the compiler refuses declarations that disagree.
+// Sizes and offsets of the stock packages, found in their machine code (`pyscripts/run abi`); the compiler refuses declarations that disagree.
 // MCA_SDK_NO_LAYOUT_ASSERT leaves this first wall out, for the tests of the second one (guard.cpp).
 #pragma once
 #include <core/Dispatching.hpp>
@@ -22,13 +22,14 @@
 namespace yade {
 // clang-format off
 #define SIZE(cls, bytes) static_assert(sizeof(cls) == bytes, "sizeof " #cls);
+#define FROM(number, newer, older) (MCA_YADE_NUMBER >= number ? newer : older)
 #define OFFSET(cls, member, bytes) static_assert(offsetof(cls, member) == bytes, "offset of " #cls "::" #member);
 static_assert(alignof(Quaternionr) == 8 && alignof(Se3r) == 8 && alignof(Matrix3r) == 8, "alignment of Eigen's types");
 SIZE(Vector3r, 24) SIZE(Quaternionr, 32) SIZE(Se3r, 56) SIZE(Matrix3r, 72)
 SIZE(Serializable, 0x18) SIZE(Engine, 0x68) SIZE(GlobalEngine, 0x68) SIZE(PartialEngine, 0x80) SIZE(TimeStepper, 0x70) SIZE(PeriodicEngine, 0xb8)
 SIZE(BoundaryController, 0x68) SIZE(State, 0x140) SIZE(Shape, 0x60) SIZE(Sphere, 0x68) SIZE(Bound, 0x90) SIZE(Aabb, 0x90) SIZE(Material, 0x50)
 SIZE(ElastMat, 0x60) SIZE(FrictMat, 0x68) SIZE(Body, 0xb0) SIZE(IGeom, 0x20) SIZE(IPhys, 0x20) SIZE(NormPhys, 0x40) SIZE(NormShearPhys, 0x60)
-SIZE(FrictPhys, 0x68) SIZE(GenericSpheresContact, 0x60) SIZE(ScGeom, 0xc0) SIZE(ScGeom6D, 0x140) SIZE(Interaction, 0xa8) SIZE(BodyContainer, 0xc8)
+SIZE(FrictPhys, FROM(20260100, 0x70, 0x68)) SIZE(GenericSpheresContact, 0x60) SIZE(ScGeom, 0xc0) SIZE(ScGeom6D, 0x140) SIZE(Interaction, 0xa8) SIZE(BodyContainer, 0xc8)
 SIZE(InteractionContainer, 0xc0) SIZE(ForceContainer, 0x130) SIZE(EnergyTracker, 0xb0) SIZE(Scene, 0x2f0) SIZE(Functor, 0x50) SIZE(BoundFunctor, 0x58)
 SIZE(IGeomFunctor, 0x58) SIZE(IPhysFunctor, 0x58) SIZE(LawFunctor, 0x58) SIZE(GlShapeFunctor, 0x58)
 OFFSET(Engine, scene, 0x18) OFFSET(Engine, timingDeltas, 0x30) OFFSET(Engine, dead, 0x40) OFFSET(Engine, ompThreads, 0x44) OFFSET(Engine, label, 0x48)
@@ -49,6 +50,7 @@ OFFSET(Scene, dt, 0x1b8) OFFSET(Scene, iter, 0x1c0) OFFSET(Scene, time, 0x1d0) O
 OFFSET(Scene, engines, 0x228) OFFSET(Scene, bodies, 0x258) OFFSET(Scene, interactions, 0x268) OFFSET(Scene, energy, 0x278) OFFSET(Scene, materials, 0x288)
 OFFSET(Scene, cell, 0x2b0) OFFSET(Functor, scene, 0x28) OFFSET(Functor, label, 0x30)
 #undef SIZE
+#undef FROM
 #undef OFFSET
 // clang-format on
 } // namespace yade

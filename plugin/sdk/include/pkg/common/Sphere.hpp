@@ -9,6 +9,9 @@ public:
 	Sphere();
 	virtual ~Sphere();
 	YADE_SDK_STOCK_CLASS
+#if MCA_YADE_NUMBER >= 20260100
+	Real getVolume() override;
+#endif
 	YADE_SDK_STOCK_INDEX
 };
 } // namespace yade

@@ -6,6 +6,9 @@ namespace yade {
 class FrictPhys : public NormShearPhys { // 0x68 bytes
 public:
 	Real tangensOfFrictionAngle; // 0x60
+#if MCA_YADE_NUMBER >= 20260100
+	Real frictDissip; // 0x68
+#endif
 	FrictPhys();
 	virtual ~FrictPhys();
 	YADE_SDK_STOCK_CLASS

@@ -1,0 +1,288 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""`tests/run clean`: the commands of README.md, in their order, on machines with nothing of ours on them; called by tests/run.
+
+For each supported release of Debian a minimal root is made by mmdebstrap, the commit at hand is cloned into it, and its owner, root or an ordinary user with sudo, types what
+README.md says. Then a second user does the same with the first one's build: an ordinary user without sudo, or root. At the end files saved in one release are loaded in the other.
+The bare roots are kept in build/roots (YADE_MCA_ROOTS names another folder). Needs root; where no root can be made or entered, it says so and nothing fails.
+"""
+import argparse
+import concurrent.futures
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+TREE = Path(__file__).resolve().parents[1]
+ROOTS = Path(os.environ.get('YADE_MCA_ROOTS', TREE / 'build' / 'roots')).resolve()
+SUITES = {'bookworm': 'root', 'trixie': 'anna'}  #: release -> who owns the tree there and builds
+WARNING = ('forky', )  #: tried as well when named; what fails there is shown and not counted
+INCLUDE = 'ca-certificates,git,sudo'  #: what one must have to fetch a source tree and to install packages
+FAILS = {'pyscripts/run': 2}  #: status of commands for which it is not 0: without a task the list comes as a refusal
+LEFT_OUT = ('tests/run', )  #: hours of processors for what continuous integration does anyway
+printing = threading.Lock()
+
+
+class Skipped(Exception):
+	"""The machine does not allow the check."""
+
+
+class Broken(Exception):
+	"""A root could not be made ready though the machine allows it."""
+
+
+def say(text):
+	with printing:
+		print(text, flush=True)
+
+
+def readme(text):
+	"""(commands in their order, the script ball.py) of README.md: indented blocks are commands, the Python block is the script."""
+	commands = [line[4:].split('  #')[0].strip() for line in re.sub(r'```.*?```', '', text, flags=re.S).splitlines() if re.match(r' {4}\S', line)]
+	for command in commands:
+		if not re.match(r'(\w+=\S+ )?(pyscripts/|tests/|yade |/usr/bin/python3 |cmake |sudo apt-get )', command): raise Broken("README.md: '%s' is no command this check knows" % command)
+	script = re.findall(r'```python\n(.*?)```', text, re.S)
+	if len(commands) < 6 or len(script) != 1: raise Broken('README.md: %d commands and %d scripts found' % (len(commands), len(script)))
+	return [c for c in commands if not c.startswith(LEFT_OUT)], script[0]
+
+
+def output(*command):
+	return subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+
+def aptSettings():
+	"""How this machine reaches its mirror (proxies, checks of dates), for the apt in the roots."""
+	dump = output('apt-config', 'dump').stdout
+	return ''.join(line + '\n' for line in dump.splitlines() if re.match(r'Acquire::(https?::|Check-Valid-Until|Check-Date|Retries)', line))
+
+
+def mirror():
+	"""Address of the Debian packages that this machine itself uses."""
+	found = output('apt-get', 'indextargets', '--format', '$(REPO_URI)', 'Created-By: Packages', 'Component: main').stdout.split()
+	for uri in found:
+		if uri.rstrip('/').endswith('/debian'): return uri
+	raise Skipped('apt knows no mirror of Debian here')
+
+
+def mayMakeRoots():
+	"""Raises Skipped where a root cannot be made or entered."""
+	if os.getuid() != 0: raise Skipped('only root can make and enter a root')
+	if not shutil.which('mmdebstrap'):
+		output('apt-get', 'update')
+		output('apt-get', 'install', '-y', '--no-install-recommends', 'mmdebstrap')
+	if not shutil.which('mmdebstrap'): raise Skipped('mmdebstrap is missing and cannot be installed')
+	trial = ROOTS / 'trial'
+	trial.mkdir(parents=True, exist_ok=True)
+	try:
+		done = output('mount', '-t', 'proc', 'proc', str(trial))
+		if done.returncode: raise Skipped('nothing can be mounted here (%s)' % done.stdout.strip())
+		output('umount', str(trial))
+	finally:
+		trial.rmdir()
+	if output('git', '-C', str(TREE), 'rev-parse', 'HEAD').returncode: raise Skipped('the tree is no git repository: there is no commit to clone')
+
+
+class Root:
+	"""A root of one release in which `owner` has the tree. Use as a context manager: what it mounts it unmounts."""
+
+	def __init__(self, suite, owner, ccache=None):
+		self.suite, self.owner, self.ccache = suite, owner, ccache
+		self.name = '%s %s' % (suite, owner)
+		self.path = ROOTS / ('%s-%s' % (suite, owner))
+		self.home = {'root': '/root', 'anna': '/home/anna'}
+		self.tree = '/opt/yade-mca' if owner == 'root' else '/home/anna/yade-mca'
+		self.log = ROOTS / (self.path.name + '.log')
+		self.failed = self.passed = 0
+		self.running, self.ending = None, False
+
+	def make(self):
+		"""The bare root, from the kept one where there is one."""
+		kept = ROOTS / (self.suite + '.tar')
+		start = time.time()
+		if not kept.exists():
+			uri, part = mirror(), ROOTS / (self.path.name + '.part.tar')
+			if output('/usr/lib/apt/apt-helper', 'download-file', '%s/dists/%s/InRelease' % (uri.rstrip('/'), self.suite), str(part)).returncode:
+				raise Skipped('the mirror of packages does not answer or has no %s' % self.suite)
+			settings = ROOTS / 'apt.conf'
+			settings.write_text(aptSettings())
+			done = output('mmdebstrap', '--mode=root', '--variant=minbase', '--aptopt=%s' % settings, '--include=' + INCLUDE, self.suite, str(part), 'deb %s %s main' % (uri, self.suite))
+			if done.returncode: raise Broken('mmdebstrap failed:\n' + done.stdout[-3000:])
+			part.rename(kept)
+		self.path.mkdir(parents=True)
+		done = output('tar', '-C', str(self.path), '-xf', str(kept))
+		if done.returncode: raise Broken('tar failed: ' + done.stdout[-500:])
+		for name in ('resolv.conf', 'hosts'):
+			shutil.copy('/etc/' + name, self.path / 'etc' / name)
+		(self.path / 'usr/sbin/policy-rc.d').write_text('#!/bin/sh\nexit 101\n')  # no service of a package starts in here
+		(self.path / 'usr/sbin/policy-rc.d').chmod(0o755)
+		mounts = [('mount', '-t', 'proc', 'proc', '/proc'), ('mount', '--rbind', '/dev', '/dev'), ('mount', '--make-rslave', '/dev')]
+		if self.ccache:
+			(self.path / 'ccache').mkdir()
+			mounts.append(('mount', '--bind', self.ccache, '/ccache'))
+		for command in mounts:
+			done = output(*command[:-1], str(self.path) + command[-1])
+			if done.returncode: raise Skipped('%s: %s' % (' '.join(command), done.stdout.strip()))
+		if self.ccache: self.shell('root', 'apt-get update && apt-get install -y --no-install-recommends ccache && chmod -R a+rwX /ccache', '/')
+		say('%-14s %7.1f s  a bare root%s' % (self.name, time.time() - start, ' with ccache' if self.ccache else ''))
+
+	def clone(self, script):
+		where = Path(str(self.path) + self.tree)
+		self.shell('root', 'useradd -m -s /bin/bash anna', '/')
+		if self.owner != 'root': (self.path / 'etc/sudoers.d/anna').write_text('anna ALL=(ALL) NOPASSWD: ALL\n')
+		done = output('git', 'clone', '-q', '--no-hardlinks', str(TREE), str(where))
+		if done.returncode: raise Broken('git clone failed: ' + done.stdout)
+		(where / 'ball.py').write_text(script)
+		self.shell('root', 'chown -R %s: %s && mkdir -p /exchange && chmod 777 /exchange' % (self.owner, self.tree), '/')
+
+	def shell(self, user, command, folder, limit=1800):
+		"""(status, output) of a command typed by `user` in `folder`."""
+		environment = ['HOME=' + self.home[user], 'USER=' + user, 'LANG=C.UTF-8', 'TERM=dumb', 'PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin']
+		if self.ccache:
+			environment += ['CMAKE_CXX_COMPILER_LAUNCHER=ccache', 'CCACHE_DIR=/ccache', 'CCACHE_UMASK=000', 'CCACHE_NOHASHDIR=1', 'CCACHE_BASEDIR=' + os.path.dirname(self.tree),
+			                'CCACHE_SLOPPINESS=pch_defines,time_macros']
+		if self.ending: raise Broken('interrupted')
+		number = '0:0' if user == 'root' else '1000:1000'
+		full = ['chroot', '--userspec=' + number, '--groups=' + number.split(':')[0], str(self.path), '/usr/bin/env', '-i', *environment, 'bash', '-c', 'cd %s && %s' % (folder, command)]
+		self.running = subprocess.Popen(full, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors='replace', start_new_session=True)
+		try:
+			text, _ = self.running.communicate(timeout=limit)
+		except subprocess.TimeoutExpired:
+			self.stop()
+			text = self.running.communicate()[0] + '\nstopped after %g s' % limit
+		return self.running.returncode, text
+
+	def stop(self, forever=False):
+		"""Ends what is running in the root, and what would come after it."""
+		self.ending = forever
+		if self.running and self.running.poll() is None: os.killpg(self.running.pid, signal.SIGKILL)
+
+	def count(self, who, command, seconds, good, text):
+		if good: self.passed += 1
+		else: self.failed += 1
+		with open(self.log, 'a') as file:
+			file.write('==== %s: %s\n%s\n' % (who, command, text))
+		say('%-14s %7.1f s  %s  %s: %s' % (self.name, seconds, 'ok    ' if good else 'FAILED', who, command))
+		if not good: say('\n'.join('    ' + line for line in text.splitlines()[-60:]))
+
+	def type(self, user, commands):
+		"""The commands of README.md as `user` types them; in somebody else's tree with full paths, from the own home."""
+		own = user == self.owner
+		for command in commands:
+			typed = command if own else re.sub(r'\b(?=pyscripts/|pyscripts\b|ball\.py)', self.tree + '/', command)
+			start = time.time()
+			status, text = self.shell(user, typed, self.tree if own else self.home[user])
+			good = status == FAILS.get(command, 0) and 'Traceback' not in text
+			self.count(user, typed, time.time() - start, good, text)
+
+	def __enter__(self):
+		self.remove()
+		return self
+
+	def __exit__(self, *error):
+		self.remove()
+
+	def remove(self):
+		self.stop()
+		if not self.path.exists(): return
+		for _ in range(10):
+			mounted = [line.split()[1] for line in open('/proc/mounts') if line.split()[1].startswith(str(self.path) + '/')]
+			if not mounted: break
+			for place in reversed(mounted):
+				output('umount', '-l', place)
+		else: raise Broken('%s is still mounted; nothing is deleted' % ', '.join(mounted))
+		subprocess.run(['rm', '-rf', '--one-file-system', str(self.path)])
+
+
+def visit(root, commands, script):
+	"""Everything in one root but the exchange of files."""
+	if root.log.exists(): root.log.unlink()
+	root.make()
+	root.clone(script)
+	root.type(root.owner, commands)
+	other = 'anna' if root.owner == 'root' else 'root'
+	root.type(other, [c for c in commands if not c.startswith(('cmake', 'sudo', 'pyscripts/run docs'))])
+
+
+def exchange(roots):
+	"""Files saved in each release are loaded in each other one."""
+	for source in roots:
+		status, text = source.shell(source.owner, 'pyscripts/yade-mca -n -x tests/clean_exchange.py save %s /exchange' % source.suite, source.tree)
+		source.count(source.owner, 'files are saved', 0, status == 0, text)
+		for target in roots:
+			if target is source: continue
+			for file in sorted((source.path / 'exchange').glob(source.suite + '-*')):
+				shutil.copy(file, target.path / 'exchange')
+				os.chmod(target.path / 'exchange' / file.name, 0o644)
+			for file in sorted((target.path / 'exchange').glob(source.suite + '-*[lz]')):  # not the numbers, .json
+				start = time.time()
+				status, text = target.shell(target.owner, 'pyscripts/yade-mca -n -x tests/clean_exchange.py load %s /exchange/%s' % (target.suite, file.name), target.tree)
+				said = re.findall(r'^EXCHANGE (.*)$', text, re.M)
+				target.count(target.owner, 'loads %s: %s' % (file.name, said[0] if said else 'no answer'), time.time() - start, status == 0 and len(said) == 1, text)
+
+
+def main():
+	signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # so that mounts are taken down, too
+	parser = argparse.ArgumentParser(prog='tests/run clean', description=__doc__.split('\n')[0])
+	parser.add_argument('suite', nargs='*', help='releases; default: %s; %s as a warning' % (', '.join(SUITES), ', '.join(WARNING)))
+	parser.add_argument('--owner', choices=['root', 'anna'], help='who owns the tree and builds: root, or a user with sudo (default: %s)' % ', '.join('%s in %s' % (o, s) for s, o in SUITES.items()))
+	parser.add_argument('--ccache', metavar='FOLDER', help='keep what is compiled in this folder: shorter, but ccache is on the machine then')
+	options = parser.parse_args()
+	for suite in options.suite:
+		if suite not in SUITES and suite not in WARNING: parser.error("no release '%s'; there are %s" % (suite, ', '.join([*SUITES, *WARNING])))
+	passed = failed = 0
+	start = time.time()
+	try:
+		mayMakeRoots()
+		commands, script = readme((TREE / 'README.md').read_text())
+		if output('git', '-C', str(TREE), 'status', '--porcelain', '--untracked-files=no').stdout: say('the tree has changes that are not committed and so not in the clones')
+		roots = [Root(suite, options.owner or SUITES.get(suite, 'root'), options.ccache) for suite in options.suite or SUITES]
+		with contexts(roots), concurrent.futures.ThreadPoolExecutor(len(roots)) as pool:
+			try:
+				problems = list(pool.map(attempt, [(visit, root, commands, script) for root in roots]))
+			except BaseException:  # interrupted: the threads would go on to the end
+				for root in roots:
+					root.stop(forever=True)
+				raise
+			ready = [root for root, problem in zip(roots, problems) if problem is None]
+			if len(ready) > 1 and not any(root.failed for root in ready): exchange(ready)
+			for root in roots:
+				if root.suite in WARNING: say('%s is a warning only: %d passed, %d failed are not counted' % (root.suite, root.passed, root.failed))
+				else: passed, failed = passed + root.passed, failed + root.failed
+			failed += sum(p == 'broken' and r.suite not in WARNING for r, p in zip(roots, problems))
+	except Skipped as e:
+		say('skipped: %s' % e)
+	except Broken as e:
+		say('FAILED: %s' % e)
+		failed += 1
+	say('%.0f s' % (time.time() - start))
+	say('clean: %d passed, %d failed' % (passed, failed))
+	return 1 if failed else 0
+
+
+def contexts(roots):
+	import contextlib
+	stack = contextlib.ExitStack()
+	for root in roots:
+		stack.enter_context(root)
+	return stack
+
+
+def attempt(job):
+	"""None, or what came of a visit that did not reach its end."""
+	function, root, *rest = job
+	try:
+		function(root, *rest)
+	except Skipped as e:
+		say('%-14s skipped: %s' % (root.name, e))
+		return 'skipped'
+	except Broken as e:
+		say('%-14s FAILED: %s' % (root.name, e))
+		return 'broken'
+
+
+if __name__ == '__main__':
+	sys.exit(main())
