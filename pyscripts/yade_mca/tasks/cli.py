@@ -6,10 +6,10 @@ import os
 import sys
 import traceback
 
-from . import registry
+from . import registry, streams
 from .progress import Progress
 from .registry import UsageError
-from .report import Report
+from .report import Report, isPlain
 
 PROGRAM = os.environ.get('YADE_MCA_PROGRAM', 'pyscripts/run')
 
@@ -58,7 +58,10 @@ def checkCommon(args):
 	if args.json is not None:
 		if os.path.isdir(args.json) or not args.json:
 			raise UsageError("--json: '%s' is not a file name" % args.json)
-		writable(os.path.dirname(os.path.abspath(args.json)), '--json')
+		if isPlain(args.json):
+			writable(os.path.dirname(os.path.realpath(args.json)), '--json')
+		elif not os.access(args.json, os.W_OK):
+			raise UsageError("--json: '%s' is not writable" % args.json)
 	if args.out is not None:
 		try:
 			os.makedirs(args.out, exist_ok=True)
@@ -106,7 +109,18 @@ def setThreads(args):
 
 
 def main(argv=None):
-	"""Runs a task; returns the status of the process."""
+	"""Runs a task; returns the status of the process. argv: None for the words of the command line."""
+	if argv is not None:
+		return runTask(argv)
+	streams.install()
+	status = runTask(None)
+	why = streams.refused()
+	if why:
+		print('%s: the standard output could not be written: %s' % (PROGRAM, why), file=sys.stderr)
+	return 1 if why and not status else status
+
+
+def runTask(argv):
 	try:
 		args, module = parse(sys.argv[1:] if argv is None else argv)
 	except UsageError as e:
