@@ -93,7 +93,7 @@ def geometricLength(positions, plasticStrain, radius, direction=(0., -1.), quant
 	tail = e < TAIL_STRAIN
 	if not tail.any():
 		return 0.
-	near = abs(across - across[tail].mean()) <= radius
+	near = abs(across - across[tail].mean()) <= radius * (1 + 1e-9)
 	if not (near & tail).any():
 		return 0.
 	return float((np.quantile(along[near & (e < BROKEN_STRAIN)], 1 - quantile) - along[near & tail].min()) / (1 - quantile))
