@@ -74,7 +74,8 @@ def positive(**values):
 def within(name, value, low, high, unit='', openLow=False):
 	"""low <= value <= high (low < value with openLow); `high` may be inf, which then is allowed."""
 	if not (_isNumber(value) and (low < value or value == low and not openLow) and value <= high):
-		raise SceneError('%s must be %s %g%s%s; got %r' % (name, 'above' if openLow else 'from', low, '' if high == math.inf else '%s %g' % (' and at most' if openLow else ' to', high), unit and ' ' + unit, value))
+		top = '' if high == math.inf else (' and at most %g' if openLow else ' to %g') % high
+		raise SceneError('%s must be %s %g%s%s; got %r' % (name, 'above' if openLow else 'from', low, top, unit and ' ' + unit, value))
 
 
 def oneOf(name, value, allowed):
@@ -86,7 +87,8 @@ def affordable(spacing, *sizes):
 	"""`sizes`: (width, height) [m] of what is filled with automata."""
 	number = sum(a * b for a, b in sizes) / (PITCH * spacing**2)
 	if not number <= MOST:
-		raise SceneError('spacing %g m gives some %.2g automata; at most %g are made: take a spacing of at least %.2g m, or smaller bodies' % (spacing, number, MOST, spacing * math.sqrt(number / MOST)))
+		raise SceneError('spacing %g m gives some %.2g automata; at most %g are made: take a spacing of at least %.2g m, or smaller bodies' %
+		                 (spacing, number, MOST, spacing * math.sqrt(number / MOST)))
 
 
 def subsonic(name, speed, *materials):
@@ -95,4 +97,5 @@ def subsonic(name, speed, *materials):
 	records = [get(m) if isinstance(m, (str, Material)) else m for m in materials]
 	fastest = max(records, key=lambda m: m.bulkSoundSpeed)
 	if not abs(speed) <= MACH * fastest.bulkSoundSpeed:
-		raise SceneError("%s must be at most %g m/s, %g times the sound speed of '%s'; got %r" % (name, MACH * fastest.bulkSoundSpeed, MACH, getattr(fastest, 'name', None) or fastest.label, speed))
+		raise SceneError("%s must be at most %g m/s, %g times the sound speed of '%s'; got %r" %
+		                 (name, MACH * fastest.bulkSoundSpeed, MACH, getattr(fastest, 'name', None) or fastest.label, speed))

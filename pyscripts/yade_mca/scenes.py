@@ -20,8 +20,8 @@ from .scene import PITCH, PLATE, ROD, Scene, SceneError, affordable, oneOf, posi
 from .tied_plate import gradedLines, leaning, plateGeometry, tiedPlate
 from .uniaxial import addStrip, driveEnd, middle, plateImpact, profile, strip
 
-__all__ = ['Scene', 'SceneError', 'addStrip', 'bar', 'checkImpact', 'driveEnd', 'gradedLines', 'law2Engines', 'middle', 'penetration', 'plateImpact', 'profile', 'rodLength', 'rodMeasure', 'start', 'strip',
-           'taylorBar', 'tiedPlate', 'touchDown']
+__all__ = ['Scene', 'SceneError', 'addStrip', 'bar', 'checkImpact', 'driveEnd', 'gradedLines', 'law2Engines', 'middle', 'penetration', 'plateImpact', 'profile',
+           'rodLength', 'rodMeasure', 'start', 'strip', 'taylorBar', 'tiedPlate', 'touchDown']
 
 SPALL = (3.8e9, 3.0e9)  #: tensile strength of rod and plate [Pa], see penetration()
 STEEPEST = math.radians(75)  #: largest obliquity of the rod [rad]
@@ -102,7 +102,7 @@ def taylorBar(material, length, diameter, spacing, speed, friction=0., anvil='sm
 	affordable(spacing, (length, diameter))
 	subsonic('speed', speed, material)
 	outline, rough = Rectangle((0, 0.5 * length), (diameter, length)), anvil == 'rough'
-	body = hexagonal(spacing, outline, angle=0.5 * math.pi, origin=(0, 0.5 * spacing)) if rough else hexagonal(spacing, outline, origin=(0., 0.))
+	body = hexagonal(spacing, outline, **(dict(angle=0.5 * math.pi, origin=(0, 0.5 * spacing)) if rough else dict(origin=(0., 0.))))
 	s = start(engineOptions)
 	m = packings._material(material)
 	s.facts.update(speed=speed, length=length, diameter=diameter, anvil=anvil)
@@ -128,12 +128,14 @@ def _rodPacking(s, spacing, length, diameter, angle, obliquity, direction, thick
 	back = -np.asarray(direction)
 	if obliquity == 0 and leaning(angle) == 0:
 		top = plate.positions[plate.onLine((0, 0), (0, 1)), 1].max()  # 0, or half a spacing below the face
-		p = hexagonal(spacing, Rectangle((0, 0.5 * length), (diameter, length)), angle=plate.angle, origin=(0., 0.5 * spacing if top > -0.25 * spacing else 0.))
+		origin = (0., 0.5 * spacing if top > -0.25 * spacing else 0.)
+		p = hexagonal(spacing, Rectangle((0, 0.5 * length), (diameter, length)), angle=plate.angle, origin=origin)
 	elif obliquity == 0:
 		p = hexagonal(spacing, Rectangle((0, 0.5 * length + 1e-6 * spacing), (diameter, length)), angle=plate.angle, origin=plate.positions[0])
 	else:
 		middle = np.array((0., -0.5 * thickness)) + back * (0.5 * length + thickness)
-		p = hexagonal(spacing, Rectangle(middle, (diameter, length), angle=obliquity), angle=0.5 * math.pi + angle + obliquity, origin=middle - back * (0.5 * length - 0.5 * spacing))
+		first = middle - back * 0.5 * (length - spacing)
+		p = hexagonal(spacing, Rectangle(middle, (diameter, length), angle=obliquity), angle=0.5 * math.pi + angle + obliquity, origin=first)
 	return touchDown(p, plate, direction)
 
 
@@ -197,11 +199,13 @@ def penetration(thickness=25e-3, spacing=1e-3, speed=1520., mode='coupled', ends
 
 	rodMat, plateMat = material(rod, spallStrength[0]), material(plate, spallStrength[1])
 	options = dict(dict(seed=seed, account=account), **(engineOptions or {}))
-	s = tiedPlate(plateMat, thickness, spacing, automataWidth, plateWidth, mode, ends, dtFactor=options.get('dtFactor', dtFactor), angle=angle, engineOptions=options)
+	dtFactor = options.get('dtFactor', dtFactor)
+	s = tiedPlate(plateMat, thickness, spacing, automataWidth, plateWidth, mode, ends, dtFactor=dtFactor, angle=angle, engineOptions=options)
 	direction = (math.sin(obliquity), -math.cos(obliquity))
 	body = _rodPacking(s, spacing, rodLength, rodDiameter, angle, obliquity, direction, thickness)
 	s.add('rod', body, rodMat, velocity=(speed * direction[0], speed * direction[1]), mask=ROD, color=(0.8, 0.5, 0.2))
-	s.facts.update(speed=speed, rodLength=rodLength, rodDiameter=rodDiameter, rod=rodMat.label, direction=direction, rear=(0., -thickness), normal=(0., -1.), obliquity=obliquity, seed=seed)
+	s.facts.update(speed=speed, rodLength=rodLength, rodDiameter=rodDiameter, rod=rodMat.label, direction=direction, rear=(0., -thickness), normal=(0., -1.),
+	               obliquity=obliquity, seed=seed)
 	s.facts['restLength'] = measure.geometricLength(body.positions, np.zeros(len(body)), 0.5 * rodDiameter, direction)
 	return s
 

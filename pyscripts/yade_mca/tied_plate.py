@@ -37,7 +37,8 @@ def gradedLines(start, end, first, growth=1.1, largest=None):
 	while n <= LINES and cells(n, growth).sum() < distance * (1 - 1e-9):
 		n += 1
 	if n > LINES or distance > LINES * largest:
-		raise SceneError('a grid from %g to %g m with cells of %g m, at most %g m, has more than %d lines: take larger cells or a shorter distance' % (start, end, first, largest, LINES))
+		raise SceneError('a grid from %g to %g m with cells of %g m, at most %g m, has more than %d lines: take larger cells or a shorter distance' %
+		                 (start, end, first, largest, LINES))
 	if cells(n, 1 / growth).sum() > distance:
 		lengths = np.full(max(round(distance / first), 1), 1.)
 	else:
@@ -66,13 +67,15 @@ def plateGeometry(thickness, spacing, automataWidth, plateWidth, mode, angle):
 	if thickness < 2 * spacing or automataWidth < 4 * spacing:
 		raise SceneError('spacing %g m is above half the thickness %g m or a quarter of automataWidth %g m' % (spacing, thickness, automataWidth))
 	if abs(thickness / spacing - round(thickness / spacing)) > 1e-6:
-		raise SceneError('thickness %g m is not a whole number of spacings %g m: take spacing %g m' % (thickness, spacing, thickness / math.ceil(thickness / spacing)))
+		raise SceneError('thickness %g m is not a whole number of spacings %g m: take spacing %g m' %
+		                 (thickness, spacing, thickness / math.ceil(thickness / spacing)))
 	affordable(spacing, (thickness, automataWidth))
 	lean = leaning(angle)
 	half = round(0.5 * automataWidth * math.cos(lean) / (PITCH * spacing)) * PITCH * spacing / math.cos(lean)
 	grid = 0.5 * plateWidth - half  # width of the grid on one side, in the middle of the thickness
 	if mode == 'coupled' and (grid < spacing or grid * (1 - NARROWEST) < 0.5 * thickness * abs(math.tan(lean))):
-		more = ' whose rows lean by %.3g degrees: take at least %.3g m' % (math.degrees(lean), 2 * half + thickness * abs(math.tan(lean)) / (1 - NARROWEST)) if lean else ''
+		least = 2 * half + thickness * abs(math.tan(lean)) / (1 - NARROWEST)
+		more = ' whose rows lean by %.3g degrees: take at least %.3g m' % (math.degrees(lean), least) if lean else ''
 		raise SceneError('plateWidth %g m leaves no room for a grid beside %g m of automata%s' % (plateWidth, 2 * half, more))
 	return lean, half
 
@@ -102,7 +105,8 @@ def _plateEnds(s, material, spacing, thickness, half, lines, lean, ends, dtFacto
 	for name, sign in (('right', 1), ('left', -1)):  # all blocks come before the first boundary
 		if lean:
 			x = (sign * lines + shift[:, None] * share)[:, ::sign]
-			s.blocks[name] = s.grid.addBlock(material, np.ascontiguousarray(x), np.ascontiguousarray(np.broadcast_to(ys[:, None], x.shape)), name=name)
+			y = np.broadcast_to(ys[:, None], x.shape)
+			s.blocks[name] = s.grid.addBlock(material, np.ascontiguousarray(x), np.ascontiguousarray(y), name=name)
 		else:
 			s.blocks[name] = s.grid.addRectangle(material, (sign * lines)[::sign].tolist(), ys.tolist(), name=name)
 	for name, outer in (('right', 'right'), ('left', 'left')):

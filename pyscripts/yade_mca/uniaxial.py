@@ -37,7 +37,8 @@ def strip(spacing, begin, length, rows, angle=0.):
 		raise SceneError('rows of a strip must be even and at least 2; got %r' % rows)
 	d, half = spacing, 0.5 * rows * spacing * (PITCH if along else 1.)
 	affordable(d, (length, 2 * half))
-	p = hexagonal(d, Rectangle((begin + 0.5 * length, 0), (length, 2 * half + 1e-6 * d)), angle=angle, origin=(begin + (0.25 if along else 0.5) * d, 0.), rim='full')
+	outline = Rectangle((begin + 0.5 * length, 0), (length, 2 * half + 1e-6 * d))
+	p = hexagonal(d, outline, angle=angle, origin=(begin + (0.25 if along else 0.5) * d, 0.), rim='full')
 	p = withoutCorners(p.translated((begin + 0.5 * d - p.positions[:, 0].min() + (0. if along else (PITCH - 1) * 0.5 * d), 0.)))
 	if not len(p):
 		raise SceneError('no strip of %g by %g m has automata of %g m that hold together: take a smaller spacing' % (length, 2 * half, d))
