@@ -51,7 +51,7 @@ def bounds(s):
 	"""What all pictures of a run show (x0, y0, x1, y1) [m]: the plate, the rod at the start and as much below the plate."""
 	f = s.facts
 	half = 0.5 * f.get('plateWidth', f['automataWidth']) + 2 * f['spacing']
-	half = min(half, 0.6 * f['rodLength'])
+	half = max(min(half, 0.6 * f['rodLength']), abs(f['direction'][0]) * f['rodLength'] + 2 * f['rodDiameter'])  # an oblique rod leans over
 	return (-half, -f['thickness'] - 0.85 * f['rodLength'], half, 1.02 * f['rodLength'])
 
 
@@ -98,7 +98,7 @@ def historyPicture(path, run, title=''):
 	e0 = run.impactEnergy
 	panels = [
 	        ('velocity', 'm/s', {'tail': r['tailVelocity'], 'all rod material': r['allVelocity']}),
-	        ('loss', '', {'dl/l0': r['lengthLoss'], 'dU/U0 of the tail': r['velocityLossTail'], 'dU/U0 of all': r['velocityLossAll']}),
+	        ('loss', '', {'dl/l0 by mass': r['lengthLoss'], 'dl/l0 as length': r['lengthLossGeometric'], 'dU/U0 of the tail': r['velocityLossTail'], 'dU/U0 of all': r['velocityLossAll']}),
 	        ('energy', 'J/m', dict({'sum': r['total'], 'kinetic': r['kinetic'], 'plastic work': r['plastic'], 'stored': r['stored'], 'viscous': r['viscous'], 'friction': r['friction']},
 	                               **({'grid, internal': r['grid']} if run.scene.grid else {}))),
 	        ('sum / impact energy - 1', '%', {'independent sum': 100 * (r['total'] - r['total'][0]) / e0}),

@@ -3,6 +3,7 @@
 
 What is reported, and when, is defined in yade_mca/measure.py and yade_mca/impact.py.
 """
+import math
 import os
 import sys
 import time
@@ -103,7 +104,7 @@ def expectedEnd(run):
 	f = run.scene.facts
 	if run.until is not None:
 		return run.until
-	tate = tatePlate(f['rodLength'], f['thickness'], f['speed'], **results.TATE)
+	tate = tatePlate(f['rodLength'], f['thickness'] / math.cos(f['obliquity']), f['speed'], **results.TATE)
 	return min(run.longest, 1.3 * tate['time'] + run.window + f['rodDiameter'] / f['speed'])
 
 
