@@ -56,11 +56,14 @@ bool McaEngine::standsIn(const Scene& scene) const
 	return std::any_of(scene.engines.begin(), scene.engines.end(), [&](const shared_ptr<Engine>& e) { return e.get() == this; });
 }
 
+/// The present scene, if its bodies are those of this engine, or none are yet. YADE keeps scenes alive that O.reset has replaced.
 shared_ptr<Scene> McaEngine::myScene(const char* call) const
 {
-	auto s = home.lock();
-	if (!s && solver && !bodies.empty()) throw mca::Error(string("McaEngine.") + call + ": the scene of this engine is gone (O.reset, O.load, ...); take the engine of the present scene from O.engines.");
-	return s ? s : Omega::instance().getScene();
+	const auto present = Omega::instance().getScene();
+	if (solver && !bodies.empty() && home.lock() != present)
+		throw mca::Error(string("McaEngine.") + call + ": the bodies of this engine are those of another scene, which is gone (O.reset, O.load) or not the present one (O.switchToScene); take the engine of the present scene from "
+		                 "O.engines, or switch back first.");
+	return present;
 }
 
 /// Another scene than that of the bodies: nothing of the old one stays. A loaded engine finds its bodies there.
@@ -68,7 +71,6 @@ void McaEngine::settleIn(Scene* scene)
 {
 	const auto now = home.lock();
 	if (now && now.get() == scene) return;
-	if (now && standsIn(*now)) throw mca::Error("McaEngine: this engine stands in O.engines of another scene, too, whose automata it moves; make one for each scene.");
 	const auto present = Omega::instance().getScene();
 	if (present.get() != scene) throw mca::Error("McaEngine: it runs in a scene that is not the present one.");
 	const bool loaded = solver && bodies.empty() && !order.empty() && home.expired();
