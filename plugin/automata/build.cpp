@@ -20,6 +20,8 @@ namespace {
 		for (double v : { a.x, a.y, a.vx, a.vy, a.omega, a.angle, a.mass, a.inertia, a.diameter, a.weight, a.strength })
 			if (!std::isfinite(v)) refuse("position, velocity, mass, inertia, diameter, weight or strength is not finite (" + number(v) + "); give finite numbers.");
 		if (!(a.diameter > 0)) refuse("diameter " + number(a.diameter) + " m must be above zero.");
+		if (!(std::fabs(a.x) < 1e9 * a.diameter && std::fabs(a.y) < 1e9 * a.diameter)) refuse("position (" + number(a.x) + ", " + number(a.y) + ") m must be within 1e9 diameters of the origin.");
+		if (!(a.temperature >= 0 && std::isfinite(a.temperature))) refuse("temperature " + number(a.temperature) + " K must be finite and not negative.");
 		if (!(a.mass > 0)) refuse("mass " + number(a.mass) + " kg/m must be above zero; set state.mass (rho times area).");
 		if (a.freeR && !(a.inertia > 0)) refuse("inertia " + number(a.inertia) + " kg m must be above zero, or block the rotation.");
 		if (!(a.weight > 0 && a.weight <= 2)) refuse("weight " + number(a.weight) + " must be in (0, 2].");
@@ -67,6 +69,9 @@ void Solver::makeBlocks(const std::vector<Automaton>& in)
 	for (auto& a : in)
 		maxId = std::max(maxId, a.id);
 	place.assign(maxId + 1, -1);
+	isNew.assign(place.size(), 0);
+	for (auto& a : in)
+		isNew[size_t(a.id)] = a.isNew;
 	for (size_t i = 0; i < n; i++) {
 		const Species& sp = S.species[S.blocks[i / blockSize].species];
 		S.diameter[i]     = sp.d;
@@ -84,6 +89,7 @@ void Solver::makeBlocks(const std::vector<Automaton>& in)
 		S.mass[i] = a.mass, S.inertia[i] = a.inertia, S.weight[i] = a.weight, S.strength[i] = a.strength, S.eqps[i] = a.eqps;
 		S.ax[i] = a.freeX ? 1. / a.mass : 0., S.ay[i] = a.freeY ? 1. / a.mass : 0., S.ar[i] = a.freeR ? 1. / a.inertia : 0.;
 		S.id[i] = a.id, S.group[i] = a.group;
+		if (a.temperature > 0) S.temperature[i] = a.temperature;
 		S.cell[i] *= a.weight;
 	}
 }
@@ -108,7 +114,7 @@ void Solver::makeLinks(const Solver* old)
 	S.s.assign(S.neighbour.size(), 0.);
 	S.tau.assign(S.neighbour.size(), 0.);
 	if (old) inheritLinks(*old);
-	auto              known = [&](size_t i) { return old && old->indexOf(S.id[i]) >= 0; };
+	auto              known = [&](size_t i) { return old && indexIn(*old, S.id[i]) >= 0; };
 	std::vector<Near> near(n);
 	int64_t           crowded = -1; // told after all overlaps, which may be its cause
 	int               most = 0;

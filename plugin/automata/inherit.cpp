@@ -11,14 +11,15 @@ void Solver::inheritLinks(const Solver& old)
 	Store&       S = store;
 	const Store& O = old.store;
 	for (size_t i = 0; i < S.size(); i++) {
-		const int64_t o = S.id[i] < 0 ? -1 : old.indexOf(S.id[i]);
+		const int64_t o = S.id[i] < 0 ? -1 : indexIn(old, S.id[i]);
 		if (o < 0) continue;
 		S.flags[i] |= O.flags[o] & exposedBit;
 		S.invN[i] = O.invN[o];
 		for (int k = 0; k < nLinks; k++) {
 			const size_t at = linkSlot(i, k), from = linkSlot(o, k);
 			if (!((O.flags[o] >> (hadShift + k)) & 1)) continue;
-			const int64_t j = indexOf(O.id[O.neighbour[from]]);
+			const int32_t partner = O.id[O.neighbour[from]];
+			const int64_t j       = indexIn(old, partner) < 0 ? -1 : indexOf(partner);
 			if (j < 0) { // its partner was erased: the slot is free for a new automaton
 				S.flags[i] |= exposedBit;
 				continue;
@@ -33,9 +34,9 @@ void Solver::inheritState(const Solver& old)
 {
 	Store&       S = store;
 	const Store& O = old.store;
-	sums = old.sums, counters = old.counters, time = old.time, lastDt = old.lastDt, lastMove = old.lastMove, lastSort = old.lastSort, dtLimit = old.dtLimit;
+	sums = old.sums, counters = old.counters, time = old.time, lastDt = old.lastDt, lastMove = old.lastMove, lastSort = old.lastSort, dtLimit = old.dtLimit, filterTime = old.filterTime;
 	for (size_t i = 0; i < S.size(); i++) {
-		const int64_t o = S.id[i] < 0 ? -1 : old.indexOf(S.id[i]);
+		const int64_t o = S.id[i] < 0 ? -1 : indexIn(old, S.id[i]);
 		if (o < 0) continue;
 		S.J[i] = O.J[o], S.P[i] = O.P[o], S.h[i] = O.h[o], S.szz[i] = O.szz[o], S.eqps[i] = O.eqps[o], S.dTheta[i] = O.dTheta[o];
 		S.temperature[i] = O.temperature[o], S.strength[i] = O.strength[o], S.criterion[i] = O.criterion[o], S.angle[i] = O.angle[o];
@@ -53,7 +54,7 @@ void Solver::inheritState(const Solver& old)
 		else keepSum(i);
 	}
 	for (int32_t o : old.tied) { // tied ones keep their places in the order of tie()
-		const int64_t i = indexOf(O.id[o]);
+		const int64_t i = indexIn(old, O.id[o]) < 0 ? -1 : indexOf(O.id[o]);
 		if (i < 0) throw Error("automaton " + std::to_string(O.id[o]) + " is tied to a grid; it cannot be erased.");
 		S.flags[i] |= tiedBit;
 		S.ax[i] = O.ax[o], S.ay[i] = O.ay[o], S.ar[i] = O.ar[o];
@@ -62,11 +63,13 @@ void Solver::inheritState(const Solver& old)
 	tiedVx = old.tiedVx, tiedVy = old.tiedVy, tiedW = old.tiedW;
 	// old contacts bring their stresses along through the search
 	for (size_t r = 0; r < old.contacts.rows(); r++) {
-		const int64_t i = indexOf(O.id[old.contacts.rowOwner[r]]);
+		const int32_t id = O.id[old.contacts.rowOwner[r]];
+		const int64_t i  = indexIn(old, id) < 0 ? -1 : indexOf(id);
 		if (i < 0) continue;
 		const size_t first = contacts.size();
 		for (int32_t c = old.contacts.rowBegin[r]; c < old.contacts.rowBegin[r + 1]; c++) {
-			const int64_t j = indexOf(O.id[old.contacts.other[c]]);
+			const int32_t mate = O.id[old.contacts.other[c]];
+			const int64_t j    = indexIn(old, mate) < 0 ? -1 : indexOf(mate);
 			if (j < 0) continue;
 			contacts.owner.push_back(int32_t(i)), contacts.other.push_back(int32_t(j));
 			contacts.s.push_back(old.contacts.s[c]), contacts.tau.push_back(old.contacts.tau[c]), contacts.rest.push_back(old.contacts.rest[c]), contacts.twoG.push_back(old.contacts.twoG[c]);
@@ -78,7 +81,10 @@ void Solver::inheritState(const Solver& old)
 	for (auto& B : S.blocks)
 		B.moving = B.awake = true;
 	topologyChanged = true;
-	sums.kineticStart += account().kinetic - old.account().kinetic; // what joined or left changes the sum, not the balance
+	// what joined or left changes the sum, not the balance
+	const Account now = account(), before = old.account();
+	sums.kineticStart += now.kinetic - before.kinetic;
+	sums.left += before.volumetric + before.deviatoric - now.volumetric - now.deviatoric;
 	wake();
 	for (size_t i = 0; i < S.size(); i++)
 		results[i / blockSize].criterion = std::max(results[i / blockSize].criterion, S.flags[i] & linkBits ? S.criterion[i] : 0.);

@@ -26,14 +26,17 @@ struct Automaton {
 	double  x = 0, y = 0, vx = 0, vy = 0, omega = 0, angle = 0;
 	double  mass = 0, inertia = 0, diameter = 0, weight = 1, strength = 1;
 	double  eqps = 0;
+	double  temperature = 0; ///< [K]; 0: the material's reference temperature
 	int32_t material = 0, id = 0, group = 0;
 	bool    freeX = true, freeY = true, freeR = true;
+	bool    isNew = false; ///< build with an old solver: another automaton than the one that had this number there
 };
 
 /// Energies [J/m]; independent ones from state functions and each dissipation's own increments, booked ones from forces and velocities.
 struct Account {
 	double kinetic = 0, volumetric = 0, deviatoric = 0;                    ///< now
 	double plastic = 0, viscous = 0, friction = 0, fracture = 0, coupling = 0, boundary = 0; ///< dissipated (coupling: exchanged) since build
+	double left     = 0;                                                   ///< stored in automata that were erased, less that of added ones
 	double external = 0;                                                   ///< work of external forces and driven automata
 	double bookedVolumetric = 0, bookedDeviatoric = 0, bookedViscous = 0;  ///< work of the internal forces
 	double centre = 0; ///< velocities stand half a step after stresses: kinetic energy, work from outside and of viscous forces then, minus now
@@ -43,7 +46,7 @@ struct Account {
 	/// kinetic energy gained minus all work booked: round-off
 	double bookedError() const { return kinetic - kineticStart - bookedVolumetric - bookedDeviatoric - bookedViscous - external + boundary; }
 	/// independent sum at the time of the stresses
-	double total() const { return kinetic + volumetric + deviatoric + plastic + viscous + friction + fracture + coupling + boundary - external + centre; }
+	double total() const { return kinetic + volumetric + deviatoric + plastic + viscous + friction + fracture + coupling + boundary + left - external + centre; }
 };
 
 struct Counters {
@@ -91,6 +94,10 @@ public:
 	/// After positions or velocities were changed from outside: new contact search, no strain from the change. Call computeForces() before
 	/// changing anything, so that the strain of the last step is not lost.
 	void moved();
+	/// The next computeForces() searches contacts anew: their range or the groups have changed.
+	void searchAnew() { searchDue = true; }
+	/// Automata carried by others.
+	size_t tiedCount() const { return tied.size(); }
 	/// Sum of the volume terms of the contacts of automaton i [-].
 	double contactSum(size_t i) const { return scratch.sum.empty() ? 0. : scratch.sum[i]; }
 	/// Mises stress [Pa].
@@ -112,6 +119,8 @@ private:
 	};
 	void   makeLinks(const Solver* old);
 	void   placeLinks(const std::vector<Near>& near, const Solver* old);
+	/// Place of a number in the old solver, -1 when that was another automaton or there is none.
+	int64_t indexIn(const Solver& old, int32_t id) const { return size_t(id) < isNew.size() && isNew[size_t(id)] ? -1 : old.indexOf(id); }
 	void   inheritLinks(const Solver& old);
 	void   inheritState(const Solver& old);
 	void   makeAdjacency();
@@ -138,6 +147,7 @@ private:
 	[[noreturn]] void       overlapError(size_t i, size_t j, double ratio) const;
 
 	std::vector<int32_t>     place;
+	std::vector<char>        isNew; ///< by number, in build only
 	std::vector<BlockResult> results;
 	std::vector<BlockWork>   works;
 	std::vector<std::vector<double>> partials; ///< of integrate: work per block

@@ -23,6 +23,8 @@ void Table::validate(const std::string& what) const
 	for (size_t k = 0; k < value.size(); k++) {
 		if (!std::isfinite(value[k]) || !std::isfinite(time[k]))
 			throw Error(what + ": entry " + std::to_string(k) + " of the table is not finite; give finite times [s] and values.");
+		if (!(std::fabs(value[k]) <= 1e18))
+			throw Error(what + ": entry " + std::to_string(k) + " of the table is " + std::to_string(value[k]) + "; it must lie within -1e18 and 1e18, beyond which no number of the grid stays finite.");
 		if (k && !(time[k] > time[k - 1]))
 			throw Error(what + ": times must rise, but entry " + std::to_string(k) + " (" + std::to_string(time[k]) + " s) does not exceed the one before it.");
 	}

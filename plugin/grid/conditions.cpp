@@ -19,6 +19,7 @@ std::string Grid::nodeName(int node) const
 
 void Grid::checkNodes(const std::vector<int>& nodes, const char* what) const
 {
+	if (nodes.empty()) throw Error(std::string(what) + ": the list of nodes is empty; it must name at least one open node (sideNodes, openNode).");
 	for (const int n : nodes)
 		if (n < 0 || n >= open_.size())
 			throw Error(std::string(what) + ": there is no open node " + std::to_string(n) + "; the grid has " + std::to_string(open_.size())
@@ -41,10 +42,10 @@ std::vector<int> Grid::sideNodes(int block, Side side, int from, int to)
 	const Block& b     = checkedBlock(block, "side");
 	const bool   alongI = side == Side::bottom || side == Side::top;
 	const int    last  = alongI ? b.ni : b.nj;
+	if (from < 0 || to < -1 || to > last || from > (to < 0 ? last : to))
+		throw Error("side of block '" + b.options.name + "': nodes start = " + std::to_string(from) + " to end = " + std::to_string(to) + " are not allowed; the side has nodes 0 to "
+		            + std::to_string(last) + ", and -1 is the last.");
 	if (to < 0) to = last;
-	if (from < 0 || to > last || from > to)
-		throw Error("side of block '" + b.options.name + "': nodes " + std::to_string(from) + " to " + std::to_string(to) + " are not allowed; the side has nodes 0 to "
-		            + std::to_string(last) + ".");
 	std::vector<int> out;
 	for (int k = from; k <= to; k++) {
 		const int i = alongI ? k : side == Side::left ? 0 : b.ni, j = alongI ? (side == Side::bottom ? 0 : b.nj) : k;

@@ -79,6 +79,7 @@ public:
 	void integrate(double dt);
 	/// Forces are computed, integrate() has yet to follow.
 	bool between() const { return between_; }
+	double stepBegun() const { return dtNow_; } ///< of the step whose forces are computed [s]
 	void step(double dt)
 	{
 		computeForces(dt);

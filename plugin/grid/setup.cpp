@@ -368,6 +368,8 @@ int Grid::addGauge(double x, double y, int period)
 
 std::vector<Sample> Grid::probeLine(double x0, double y0, double x1, double y1, int n) const
 {
+	if (!std::isfinite(x0) || !std::isfinite(y0) || !std::isfinite(x1) || !std::isfinite(y1)) throw Error("probeLine: start and end must be finite points [m].");
+	if (n < 1 || n > 1000000) throw Error("probeLine: n = " + std::to_string(n) + " points; it must be from 1 to 1000000.");
 	std::vector<Sample> out;
 	for (int k = 0; k < n; k++) {
 		const double w = n > 1 ? double(k) / (n - 1) : 0.;

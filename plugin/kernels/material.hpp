@@ -76,4 +76,15 @@ inline void validate(const Material& m, const std::string& name)
 	need(m.viscosity.quadratic >= 0 && m.viscosity.quadratic < inf, "viscosityQuadratic [-]", m.viscosity.quadratic, "finite and not negative");
 	need(m.friction >= 0 && m.friction < inf, "friction [-]", m.friction, "finite and not negative");
 }
+
+/// Equal in every constant.
+inline bool same(const Material& a, const Material& b)
+{
+	const Eos &e = a.eos, &f = b.eos;
+	const Yield &y = a.yield, &z = b.yield;
+	const Fracture &p = a.fracture, &q = b.fracture;
+	return e.rho0 == f.rho0 && e.c0 == f.c0 && e.b == f.b && e.gamma0 == f.gamma0 && e.mieGrueneisen == f.mieGrueneisen && e.clampAt == f.clampAt && a.G == b.G && y.kind == z.kind && y.A == z.A && y.B == z.B && y.n == z.n
+	        && y.C == z.C && y.rate0 == z.rate0 && y.m == z.m && y.Tm == z.Tm && y.T0 == z.T0 && y.heatPerWork == z.heatPerWork && p.strain == q.strain && p.spall == q.spall && p.pairStress == q.pairStress && p.mises == q.mises
+	        && p.ratio == q.ratio && a.viscosity.linear == b.viscosity.linear && a.viscosity.quadratic == b.viscosity.quadratic && a.friction == b.friction;
+}
 }

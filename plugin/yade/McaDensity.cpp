@@ -212,7 +212,7 @@ void McaDensity::checkResults()
 	dtLimit = limit;
 }
 
-void McaDensity::action()
+void McaDensity::step()
 {
 	if (!ready) checkEngines(scene);
 	ready = true;

@@ -10,7 +10,7 @@ namespace yade {
 
 class McaDensity : public McaSolverEngine {
 public:
-	void action() override;
+	void step() override;
 	Real criticalTimeStep() const override { return dtLimit; }
 	void prepare(Scene* scene) override;
 	void postLoad(McaDensity&) { ready = false; }

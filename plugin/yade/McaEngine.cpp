@@ -2,44 +2,16 @@
 #include "McaEngine.hpp"
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
-#include <pkg/common/Sphere.hpp>
+#include "McaDensity.hpp"
 #include "McaGridEngine.hpp"
+#include "McaLook.hpp"
 #include "McaTimeStepper.hpp"
-#include <sdk/arrayView.hpp>
 
 namespace yade {
 YADE_PLUGIN((McaEngine));
 
-using mca::automata::Automaton;
 using mca::automata::Solver;
 using mca::automata::Store;
-
-namespace {
-	/// A fixed function of (seed, id): the same strengths on any number of threads and in any order of bodies. SplitMix64 (Steele, Lea and Flood 2014).
-	double uniform(uint64_t seed, uint64_t id, uint64_t draw)
-	{
-		uint64_t z = seed * 0x9e3779b97f4a7c15ULL + id * 0xbf58476d1ce4e5b9ULL + draw * 0x94d049bb133111ebULL + 0x9e3779b97f4a7c15ULL;
-		z          = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-		z          = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-		z          = z ^ (z >> 31);
-		return (double(z >> 11) + 0.5) / 9007199254740992.;
-	}
-	bool isAutomaton(const shared_ptr<Body>& b) { return b && b->material && dynamic_cast<McaMat*>(b->material.get()) && dynamic_cast<Sphere*>(b->shape.get()); }
-} // namespace
-
-Real McaEngine::drawStrength(const McaMat& m, int id) const
-{
-	if (m.strengthSpread == 0) return 1.;
-	const double u = uniform(seed, id, 0), s = m.strengthSpread;
-	if (m.strengthDistribution == "uniform") return 1. + s * std::sqrt(3.) * (2. * u - 1.);
-	if (m.strengthDistribution == "normal") {
-		const double g = std::sqrt(-2. * std::log(u)) * std::cos(2. * M_PI * uniform(seed, id, 1));
-		return 1. + s * std::min(std::max(g, -3.), 3.) * (s > 0.32 ? 0.32 / s : 1.);
-	}
-	// Weibull with mean 1: the shape k follows from the spread to 1 % by s = k^-0.926 (Dubey 1967), scale 1/Gamma(1 + 1/k)
-	const double k = std::pow(s, -1. / 0.926);
-	return std::pow(-std::log(u), 1. / k) / std::tgamma(1. + 1. / k);
-}
 
 mca::automata::Options McaEngine::solverOptions(Scene* scene) const
 {
@@ -49,139 +21,68 @@ mca::automata::Options McaEngine::solverOptions(Scene* scene) const
 	else if (volumeRule == "meanDistance") o.volumeRule = mca::VolumeRule::meanDistance;
 	else throw mca::Error("McaEngine: volumeRule = '" + volumeRule + "' is unknown; it must be 'affine', 'inversePower' or 'meanDistance'.");
 	auto within = [](const char* name, Real v, Real lo, Real hi) {
-		if (!(v >= lo && v <= hi)) throw mca::Error(string("McaEngine: ") + name + " = " + std::to_string(v) + " must be from " + std::to_string(lo) + " to " + std::to_string(hi) + ".");
+		if (v >= lo && v <= hi) return;
+		std::ostringstream s;
+		s << "McaEngine: " << name << " = " << v << " must be from " << lo << " to " << hi << ".";
+		throw mca::Error(s.str());
 	};
 	within("linkFactor", linkFactor, 1.02, 1.5);
 	within("skin", skin, 0.05, 1.);
 	within("dtFactor", dtFactor, 1e-6, 1.);
 	within("volumeFilter", volumeFilter, 0., 1.);
+	within("writePeriod", writePeriod, 0, 2147483647.);
+	within("gravity x [m/s2]", gravity[0], -1e15, 1e15), within("gravity y [m/s2]", gravity[1], -1e15, 1e15);
 	o.volumeFilter = volumeFilter, o.linkFactor = linkFactor, o.skin = skin, o.sleeping = sleeping, o.contacts = contacts;
 	o.account = account || scene->trackEnergy;
 	return o;
 }
 
-void McaEngine::gather(Scene* scene, const Solver* old)
+/// What may change during a run; what may not is refused.
+void McaEngine::takeOptions(Scene* scene)
 {
-	vector<mca::Material>  materials;
-	vector<const McaMat*>  known;
-	vector<Automaton>      list;
-	order.clear();
-	for (const auto& b : scene->bodies->body) {
-		if (!isAutomaton(b)) continue;
-		const auto* m  = static_cast<const McaMat*>(b->material.get());
-		auto        it = std::find(known.begin(), known.end(), m);
-		if (it == known.end()) {
-			materials.push_back(m->toMaterial());
-			known.push_back(m);
-			it = known.end() - 1;
-		}
-		const State& s  = *b->state;
-		auto*        ms = dynamic_cast<McaState*>(b->state.get());
-		if (!ms) throw mca::Error("body " + std::to_string(b->id) + " has material McaMat but not a McaState; make its state with material.newAssocState().");
-		Automaton a;
-		a.x = s.se3.position[0], a.y = s.se3.position[1];
-		a.vx = s.vel[0], a.vy = s.vel[1], a.omega = s.angVel[2];
-		a.angle    = 2. * std::atan2(s.se3.orientation.z(), s.se3.orientation.w());
-		a.mass     = s.mass;
-		a.inertia  = s.inertia[2];
-		a.diameter = 2. * static_cast<Sphere*>(b->shape.get())->radius;
-		const Real full = m->density * mca::Lattice<2>::cell(a.diameter);
-		a.weight        = a.mass / full;
-		if (std::fabs(a.weight - 1.) < 1e-9) a.weight = 1.;
-		if (a.mass > 0 && (a.weight < 0.05 || a.weight > 2))
-			throw mca::Error("body " + std::to_string(b->id) + ": mass " + std::to_string(a.mass) + " kg/m is " + std::to_string(a.weight) + " of the full cell (" + std::to_string(full)
-			                 + " kg/m); it must be 0.05 to 2. In plane strain the mass is density times area per 1 m of thickness: make the bodies with packings.addBodies.");
-		if (ms->strength == 0) ms->strength = drawStrength(*m, b->id);
-		a.strength = ms->strength;
-		a.eqps     = ms->plasticStrain;
-		a.material = int(it - known.begin());
-		a.id       = b->id;
-		a.group    = b->groupMask;
-		a.freeX = !(s.blockedDOFs & State::DOF_X), a.freeY = !(s.blockedDOFs & State::DOF_Y), a.freeR = !(s.blockedDOFs & State::DOF_RZ);
-		list.push_back(a);
-		order.push_back(b->id);
-	}
-	auto fresh = shared_ptr<Solver>(new Solver);
-	fresh->build(list, materials, solverOptions(scene), old);
-	solver      = fresh;
-	forcesReady = false;
-	for (auto& v : viscous) {
-		const auto i = solver->indexOf(int(v[0]));
-		if (i >= 0) solver->setDamping(i, v[1], v[2]);
-	}
-	writtenPos.clear();
-	checkBodies = false;
+	const auto now  = solverOptions(scene);
+	auto&      mine = solver->options;
+	const auto kept = [](const char* name, bool same) {
+		if (!same) throw mca::Error(string("McaEngine: ") + name + " was changed after the bodies were gathered, when it is read; set it back, or make a new engine with new bodies.");
+	};
+	kept("volumeRule", now.volumeRule == mine.volumeRule), kept("linkFactor", now.linkFactor == mine.linkFactor);
+	kept("sleeping", now.sleeping == mine.sleeping), kept("contacts", now.contacts == mine.contacts);
+	if (now.skin != mine.skin) solver->searchAnew();
+	mine.skin = now.skin, mine.volumeFilter = now.volumeFilter;
 }
 
-void McaEngine::ensureBuilt(Scene* scene)
+/// Other engines of the scene that would move automata, too, or expect that this one does what it does not.
+void McaEngine::checkScene(Scene* scene) const
 {
-	if (loaded) {
-		loaded = false;
-		checkBodies = true;
-	} else if (!solver)
-		gather(scene, nullptr);
-	else if (checkBodies)
-		adoptChanges(scene);
-	checkBodies             = false;
-	solver->options.account = account || scene->trackEnergy;
-	solver->timing          = TimingInfo::enabled;
-}
-
-// After a run the script may have changed bodies: those that differ from what was written are taken over.
-void McaEngine::adoptChanges(Scene* scene)
-{
-	if (writtenPos.empty() && !order.empty()) return;
-	vector<int> now;
-	for (const auto& b : scene->bodies->body)
-		if (isAutomaton(b)) now.push_back(b->id);
-	if (now != order) {
-		changeBodies(scene);
-		return;
+	if (coupled && gravity != Vector2r::Zero()) throw mca::Error("McaEngine: gravity acts on automata only, and the grid that they are tied to would not fall; set gravity = (0, 0).");
+	const Engine* newton = nullptr;
+	for (const auto& e : scene->engines) {
+		if (e->dead || e.get() == this) continue;
+		if (dynamic_cast<const McaEngine*>(e.get())) throw mca::Error("McaEngine: there are two in O.engines, and each would move all automata; leave one.");
+		if (dynamic_cast<const McaDensity*>(e.get())) throw mca::Error("O.engines has McaEngine and McaDensity; an automaton can be moved by one of them only.");
+		if (e->getClassName() == "NewtonIntegrator") newton = e.get();
 	}
-	bool changed = false;
-	for (size_t q = 0; q < order.size(); q++) {
-		const State& s = *scene->bodies->body[order[q]]->state;
-		changed |= s.se3.position != writtenPos[q] || s.vel != writtenVel[q] || s.angVel[2] != writtenSpin[q];
-	}
-	if (changed) solver->computeForces(); // the strain of the last step belongs to the motion before the change
-	bool   moved = false;
-	Store& S     = solver->store;
-	for (size_t q = 0; q < order.size(); q++) {
-		const State& s = *scene->bodies->body[order[q]]->state;
-		const size_t i = solver->indexOf(order[q]);
-		if (s.se3.position != writtenPos[q]) {
-			if (!s.se3.position.allFinite()) throw mca::Error("body " + std::to_string(order[q]) + ": position is not finite; give finite numbers.");
-			S.x[i] = s.se3.position[0], S.y[i] = s.se3.position[1];
-			moved = true;
-		}
-		if (s.vel != writtenVel[q]) {
-			if (!s.vel.allFinite()) throw mca::Error("body " + std::to_string(order[q]) + ": velocity is not finite; give finite numbers.");
-			S.vx[i] = s.vel[0], S.vy[i] = s.vel[1];
-			moved = true;
-		}
-		if (s.angVel[2] != writtenSpin[q]) {
-			if (!std::isfinite(s.angVel[2])) throw mca::Error("body " + std::to_string(order[q]) + ": angular velocity is not finite; give finite numbers.");
-			S.omega[i] = s.angVel[2];
-			moved = true;
-		}
-		if (S.flags[i] & mca::automata::tiedBit) continue;
-		S.ax[i] = s.blockedDOFs & State::DOF_X ? 0. : 1. / S.mass[i];
-		S.ay[i] = s.blockedDOFs & State::DOF_Y ? 0. : 1. / S.mass[i];
-		S.ar[i] = s.blockedDOFs & State::DOF_RZ ? 0. : 1. / S.inertia[i];
-	}
-	if (moved) solver->moved();
-}
-
-// Bodies were added or erased: the others keep their links, stresses and history.
-void McaEngine::changeBodies(Scene* scene)
-{
-	const auto before = order;
-	writeBodies(scene);
+	if (!newton || order.empty()) return;
+	const PyGILState_STATE state = PyGILState_Ensure(); // its declaration is not among ours: asked through Python
+	int                    mask  = 0;
+	Vector3r               g     = Vector3r::Zero();
 	try {
-		gather(scene, solver.get());
-	} catch (...) {
-		order = before;
-		throw;
+		for (const auto& e : scene->engines)
+			if (e.get() == newton) {
+				const py::object o(e);
+				mask = py::extract<int>(o.attr("mask")), g = py::extract<Vector3r>(o.attr("gravity"));
+			}
+	} catch (const py::error_already_set&) {
+		PyErr_Clear();
+	}
+	PyGILState_Release(state);
+	for (const auto& b : bodies)
+		if (mask <= 0 || (b->groupMask & mask))
+			throw mca::Error("McaEngine: NewtonIntegrator (mask " + std::to_string(mask) + ") would move body " + std::to_string(b->id) + " (mask " + std::to_string(b->groupMask)
+			                 + ") a second time; give it a mask that no automaton has, or leave it out.");
+	if (g != Vector3r::Zero() && gravity == Vector2r::Zero() && !warnedGravity) {
+		warnedGravity = true;
+		LOG_WARN("McaEngine: the gravity of NewtonIntegrator acts on the bodies of its mask only, not on automata; theirs is McaEngine.gravity.");
 	}
 }
 
@@ -201,7 +102,7 @@ void McaEngine::readExternal(Scene* scene)
 	for (int id : order) {
 		const Vector3r &f = scene->forces.getForce(id), &t = scene->forces.getTorque(id);
 		if (!f.allFinite() || !t.allFinite()) throw mca::Error("body " + std::to_string(id) + ": an engine has put a force on it that is not finite.");
-		if (f[0] != 0 || f[1] != 0 || t[2] != 0) solver->addForce(solver->indexOf(id), f[0], f[1], t[2]);
+		if (f[0] != 0 || f[1] != 0 || t[2] != 0) solver->addForce(size_t(solver->indexOf(id)), f[0], f[1], t[2]);
 	}
 }
 
@@ -209,23 +110,35 @@ Real McaEngine::criticalTimeStep() const { return solver ? solver->criticalStep(
 
 void McaEngine::computeForces(Scene* scene)
 {
+	const bool check = looked || !solver;
 	ensureBuilt(scene);
-	if (!forcesReady) solver->computeForces(); // not twice when something has stopped the step half-way: stresses would grow twice
+	if (check) checkScene(scene);
+	looked = false; // a refusal above is asked again by the next step
+	if (!forcesReady) { // not twice when something has stopped the step half-way: stresses would grow twice
+		stale = true;
+		solver->computeForces();
+	}
 	forcesReady = true;
 	readExternal(scene);
 }
 
 void McaEngine::forget()
 {
-	if (!solver || solver->counters.steps > 0) return;
-	solver.reset();
-	forcesReady = false;
+	locked([&] {
+		if (!solver || solver->counters.steps > 0) return;
+		solver.reset();
+		bodies.clear(), same.clear(), known.clear(), order.clear();
+		home.reset();
+		forcesReady = false;
+	});
 }
 
 void McaEngine::prepare(Scene* scene)
 {
-	ensureBuilt(scene);
-	if (solver->criticalStep() == 0) computeForces(scene);
+	locked([&] {
+		ensureBuilt(scene);
+		if (solver->criticalStep() == 0) computeForces(scene);
+	});
 }
 
 // Breaking links and first contacts can halve the stable step at once. Nothing has moved yet, so a time stepper that comes before this engine may
@@ -262,28 +175,34 @@ void McaEngine::integrate(Scene* scene)
 	solver->integrate(scene->dt);
 	forcesReady = false;
 	stale       = true;
-	finish(scene);
 }
 
-void McaEngine::action()
+void McaEngine::step()
 {
 	findCoupler(scene);
-	computeForces(scene);
-	if (coupled) return checkStep(scene); // before anything moves; the coupler integrates
-	if (adaptive) {
-		const Real limit = dtFactor * solver->criticalStep();
-		scene->dt        = solver->counters.steps > 0 ? std::min(limit, 1.1 * scene->dt) : limit;
-	}
-	integrate(scene);
+	locked([&] {
+		computeForces(scene);
+		if (coupled) return checkStep(scene); // before anything moves; the coupler integrates
+		if (!(dtFactor >= 1e-6 && dtFactor <= 1)) solverOptions(scene); // refuses it
+		if (adaptive && !order.empty()) {
+			const Real limit = dtFactor * solver->criticalStep();
+			scene->dt        = solver->counters.steps > 0 && scene->dt > 0 ? std::min(limit, 1.1 * scene->dt) : limit;
+		}
+		integrate(scene);
+		finish(scene);
+	});
 }
 
+/// The end of a step, coupled or not: the bodies are told if anybody may look before the next one.
 void McaEngine::finish(Scene* scene)
 {
-	// a step of O.step() is a run of its own
-	const bool last = (scene->stopAtIter > 0 && scene->iter + 1 >= scene->stopAtIter) || !Omega::instance().isRunning();
-	if (last || (writePeriod > 0 && (scene->iter + 1) % writePeriod == 0)) {
+	if (order.empty() && !warnedEmpty) {
+		warnedEmpty = true;
+		LOG_WARN("McaEngine: O.bodies holds no automaton (material McaMat, shape Sphere); nothing moves and O.dt is left alone.");
+	}
+	const bool due = writePeriod > 0 && (scene->iter + 1) % writePeriod == 0;
+	if (due || runEndsHere(*scene) || anotherLooks(*scene, this, [&](int id) { return isMine(id); })) {
 		writeBodies(scene);
-		checkBodies = true;
 	}
 	if (!TimingInfo::enabled) return;
 	const auto&  c     = solver->counters;
@@ -292,6 +211,6 @@ void McaEngine::finish(Scene* scene)
 	auto&        D     = *timingDeltas;
 	D.data.resize(7), D.labels.resize(7);
 	for (int k = 0; k < 7; k++)
-		D.labels[k] = names[k], D.data[k].nsec = (unsigned long long)(ns[k]), D.data[k].nExec = c.steps;
+		D.labels[size_t(k)] = names[k], D.data[size_t(k)].nsec = (unsigned long long)(ns[k]), D.data[size_t(k)].nExec = c.steps;
 }
 } // namespace yade

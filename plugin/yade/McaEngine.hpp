@@ -3,6 +3,7 @@
 #include "McaMat.hpp"
 #include "McaSolverEngine.hpp"
 #include "automata/solver.hpp"
+#include <boost/weak_ptr.hpp>
 #include <sdk/Blob.hpp>
 #include <core/Timing.hpp>
 
@@ -11,9 +12,14 @@ class Body;
 
 class McaEngine : public McaSolverEngine {
 public:
-	void action() override;
+	void step() override;
 	Real criticalTimeStep() const override;
 	void prepare(Scene* scene) override;
+	void bringUpToDate() override;
+	bool carriesRows() const override { return solver && solver->tiedCount() > 0; }
+	bool setsStep() const override { return adaptive && !dead; }
+	void stepIsSet() override { adaptive = false; }
+	bool built() const { return bool(solver); }
 	/// Before the first step: bodies are gathered anew at the next one.
 	void forget();
 	void preSave(McaEngine&);
@@ -22,56 +28,60 @@ public:
 	// the two halves of a step, for the coupler
 	void computeForces(Scene* scene);
 	void integrate(Scene* scene);
+	void finish(Scene* scene);
 	mca::automata::Solver& automata() { return *solver; }
+	/// The solver holds what the bodies hold: gathers them the first time, later takes over what scripts have changed. Throws mca::Error.
 	void ensureBuilt(Scene* scene);
 
-	// Python
+	// Python; each under the lock
 	void       writeBack();
 	void       reload();
 	py::object fieldByName(const string& name);
 	py::object identifiers();
 	py::dict   energies();
-	py::dict   counters();
+	py::dict   countersNow();
 	py::dict   phases();
 	py::list   linkList();
 	void       setViscous(const vector<int>& ids, const Vector2r& normal);
-	long       automataCount() const { return solver ? long(order.size()) : 0; }
+	long       automataCount() const;
 	Vector2r   momentum();
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(McaEngine, McaSolverEngine,
-		"Movable cellular automata in plane strain (x, y) on flat arrays: gathers all bodies whose material is :yref:`McaMat` and shape :yref:`Sphere`, keeps its own pairs, integrates them "
-		"and writes back to the bodies at the end of a run, every writePeriod steps and when sync() is called. "
+		"Movable cellular automata in plane strain (x, y) on flat arrays: gathers all bodies whose material is :yref:`McaMat` and shape :yref:`Sphere`, keeps its own pairs and integrates them. "
+		"Whenever a script can look - the loop has stopped, a PyRunner or recorder is due, a file is written - the bodies hold what the engine holds, and what the script then changes counts from the next "
+		"step on: positions, velocities, blocked degrees of freedom, masks, materials and their constants, plastic strains, temperatures, strengths, bodies added and erased. What cannot be taken over "
+		"(mass, radius, results such as the pressure) is refused before anything moves. While the loop runs in the background, field() and the like read the present state; bodies are those of the last look. "
 		"Masses are per 1 m of thickness: density times the area an automaton stands for (packings.addBodies sets them). "
-		"Bodies with different masks do not link at the start; they meet as contacts. Blocked degrees of freedom keep their velocity. "
-		"Changes made to bodies by a script are taken over after a run has ended, or at once by reload().",
-		((string, volumeRule, "affine", , "'affine' (default: J = det F of the links, exact in any homogeneous deformation), 'inversePower' (density from the mean of (d/r)^2) or 'meanDistance' (as published; its lattice buckles under strong plastic compression)"))
-		((Real, linkFactor, 1.2, , "bodies closer than this many diameters are linked at the start [-]"))
-		((Real, skin, 0.4, , "range of the contact search beyond touching, in diameters [-]"))
-		((Real, volumeFilter, 0.1, , "rate at which stripes of volume (alternate rows) fade in flowing material, in c0/d [-]; 0 ... 1, 0: off. They cost no force, so nothing else takes them away; affine rule"))
-		((bool, sleeping, true, , "leave out regions that nothing has reached; changes no result"))
-		((bool, contacts, true, , "search for contacts"))
-		((bool, account, false, , "keep the energy account (also on when O.trackEnergy)"))
-		((bool, adaptive, true, , "set O.dt in every step to dtFactor times the largest stable one, growing at most 10 % a step; otherwise O.dt is checked only"))
-		((Real, dtFactor, 0.4, , "share of the largest stable time step [-], 0 < dtFactor <= 1"))
-		((int, writePeriod, 0, , "write back to the bodies every so many steps; 0: only at the end of a run and when asked"))
-		((int, seed, 1, , "seed of the scattered strengths"))
-		((bool, readForces, false, , "add the forces that other engines put on the bodies (O.forces)"))
-		((Vector2r, gravity, Vector2r::Zero(), , "acceleration of all automata [m/s2]"))
-		((long, lastWritten, -1, Attr::readonly|Attr::noSave, "step of the last write-back"))
+		"Bodies with different masks do not link at the start; they meet as contacts. Blocked degrees of freedom keep their velocity. Walls, boxes, facets and clumps are refused (the law in YADE's own loop has them).",
+		((string, volumeRule, "affine", , "'affine' (default: J = det F of the links, exact in any homogeneous deformation), 'inversePower' (density from the mean of (d/r)^2) or 'meanDistance' (as published; its lattice buckles under strong plastic compression). Read when bodies are gathered; a later change is refused"))
+		((Real, linkFactor, 1.2, , "bodies closer than this many diameters are linked at the start [-], 1.02 ... 1.5. Read when bodies are gathered; a later change is refused"))
+		((Real, skin, 0.4, , "range of the contact search beyond touching, in diameters [-], 0.05 ... 1. Read at the start of a run and after every look"))
+		((Real, volumeFilter, 0.1, , "rate at which stripes of volume (alternate rows) fade in flowing material, in c0/d [-]; 0 ... 1, 0: off. They cost no force, so nothing else takes them away; affine rule. Read as skin"))
+		((bool, sleeping, true, , "leave out regions that nothing has reached; changes no result. Read when bodies are gathered; a later change is refused"))
+		((bool, contacts, true, , "search for contacts. Read when bodies are gathered; a later change is refused"))
+		((bool, account, false, , "keep the energy account (also on when O.trackEnergy). Read in every step"))
+		((bool, adaptive, true, , "set O.dt in every step to dtFactor times the largest stable one, growing at most 10 % a step; otherwise O.dt is checked only. Read in every step"))
+		((Real, dtFactor, 0.4, , "share of the largest stable time step [-], 1e-6 ... 1. Read in every step"))
+		((int, writePeriod, 0, , "write to the bodies every so many steps even if nobody looks; 0 (default): only when somebody can look. Read in every step"))
+		((int, seed, 1, , "seed of the scattered strengths; read when a body is taken over for the first time"))
+		((bool, readForces, false, , "add the forces that other engines put on the bodies (O.forces). Read in every step"))
+		((Vector2r, gravity, Vector2r::Zero(), , "acceleration of all automata [m/s2]; refused in a scene coupled to a grid, which has none. Read in every step"))
+		((long, lastWritten, -1, Attr::readonly|Attr::noSave, "step of the last write to the bodies"))
 		((bool, forcesReady, false, Attr::hidden, "forces of this step are computed; integration has yet to follow"))
+		((bool, bodiesSaved, false, Attr::hidden, "the bodies saved with it hold what it holds, so that differences are a script's"))
 		((sdk::Blob, state, , Attr::hidden, "state of the solver"))
 		((vector<int>, order, , Attr::hidden, "body ids, ascending"))
 		((vector<Vector3r>, viscous, , Attr::hidden, "of setViscous(), kept for the next time that bodies are gathered: id [-] and coefficients along x and y [kg/(m s)]"))
 		,
 		timingDeltas = shared_ptr<TimingDeltas>(new TimingDeltas);
 		,
-		.def("sync", &McaEngine::writeBack, "Write positions, velocities and states to the bodies now.")
-		.def("reload", &McaEngine::reload, "Take over positions and velocities that the script has changed, and added or erased bodies, before the next step.")
+		.def("sync", &McaEngine::writeBack, "Write positions, velocities and states to the bodies of its scene now. Needed only while the loop runs in the background; at any other time they are up to date. Raises RuntimeError when its scene is gone.")
+		.def("reload", &McaEngine::reload, "Take over in the next step what the script has changed in the bodies while the loop runs in the background; at any other time that happens by itself. Raises RuntimeError when its scene is gone.")
 		.def("field", &McaEngine::fieldByName, (py::arg("name")), "Copy of one quantity of all automata in the order of `ids`, numpy (N,): 'x', 'y' [m], 'vx', 'vy' [m/s], 'omega' [rad/s], 'angle' [rad], 'mass' [kg/m], 'pressure' [Pa], 'volumeRatio' [-], 'equivalentStress' [Pa], 'plasticStrain' [-], 'temperature' [K], 'stressZZ' [Pa], 'fx', 'fy' [N/m], 'links' [-], 'brokenLinks' [-], 'strength' [-], 'diameter' [m], 'weight' [-], 'material' [-].")
 		.add_property("ids", &McaEngine::identifiers, "Ids of the bodies, ascending; numpy (N,) int.")
 		.def("energies", &McaEngine::energies, "Energies [J/m] now; dissipations since the start when the account is kept. 'bookedError': kinetic energy minus all work booked (round-off); 'halfStep': what 'kinetic', 'external' and 'viscous' change in the half step between the stresses and the velocities; 'total': independent sum at the time of the stresses.")
-		.def("counters", &McaEngine::counters, "Work done so far: steps, searches, sorts, blockSteps (blocks of 64 computed), blocks, brokenLinks, clamped (equation of state beyond its clamp), deepest (smallest distance / rest distance), contacts, awake.")
+		.def("counters", &McaEngine::countersNow, "Work done so far: steps, searches, sorts, blockSteps (blocks of 64 computed), blocks, brokenLinks, clamped (equation of state beyond its clamp), deepest (smallest distance / rest distance), contacts, awake.")
 		.def("links", &McaEngine::linkList, "Pairs of body ids whose link holds, list of (id1, id2).")
 		.def("setViscous", &McaEngine::setViscous, (py::arg("ids"), py::arg("normal")), "Viscous (transmitting) boundary of Lysmer and Kuhlemeyer (1969) on these bodies: traction -rho cP v_n n - rho cS v_t on their outer width; normal is (1,0), (-1,0), (0,1) or (0,-1).")
 		.def("phases", &McaEngine::phases, "Time spent per phase [ns] while O.timingEnabled.")
@@ -81,22 +91,47 @@ public:
 	// clang-format on
 
 private:
+	/// What a body held when body and engine were last the same.
+	struct Same {
+		Vector3r pos, vel;
+		Real     spin, angle, plasticStrain, temperature, pressure, volumeRatio;
+	};
 	shared_ptr<mca::automata::Solver> solver;
-	bool                              loaded = false, stale = false, checkBodies = true;
-	vector<Vector3r>                  writtenPos, writtenVel;
-	vector<Real>                      writtenSpin;
-	int                               energyIndex[12] = { -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1 };
+	boost::weak_ptr<Scene>            home;     ///< scene of its bodies
+	vector<shared_ptr<Body>>          bodies;   ///< of order
+	vector<Same>                      same;     ///< of order
+	vector<shared_ptr<Material>>      known;    ///< of the solver's materials
+	bool looked = true;  ///< a script may have changed something since the last step
+	int  lost   = -1;    ///< body whose change by a script was lost; told by the next step
+	bool stale  = false; ///< the bodies do not hold the present state
+	bool         warnedEmpty = false, warnedTension = false;
+	mutable bool warnedGravity = false;
+	int  energyIndex[12] = { -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1 };
+
+	// bodies (McaEngineBodies.cpp)
+	struct Change;
+	bool              standsIn(const Scene& scene) const; ///< in its O.engines
+	shared_ptr<Scene> myScene(const char* call) const;
+	void              settleIn(Scene* scene);
+	bool              isMine(int id) const { return solver && solver->indexOf(id) >= 0; }
+	void              gather(Scene* scene);
+	void              bind(Scene* scene);
+	void              adoptChanges(Scene* scene);
+	vector<Change>    changes(bool& rebuild) const;
+	bool              sameBodies(const Scene& scene) const;
+	bool              sameMaterials() const;
+	void              apply(const vector<Change>& list);
+	void              writeBodies(Scene* scene);
+	void              writeEnergies(Scene* scene);
+	void              remember(size_t q);
+	// step
 	mca::automata::Options solverOptions(Scene*) const;
-	void                   gather(Scene*, const mca::automata::Solver* old);
-	void                   adoptChanges(Scene*);
-	void                   changeBodies(Scene*);
+	void                   takeOptions(Scene*);
+	void                   checkScene(Scene*) const;
 	void                   readExternal(Scene*);
-	void                   writeBodies(Scene*);
-	void                   writeEnergies(Scene*);
-	void                   finish(Scene*);
 	void                   checkStep(Scene*) const;
 	bool                   shortenStep(Scene* scene, Real limit) const;
-	Real                   drawStrength(const McaMat&, int id) const;
+	template <class F> auto read(F&& f);
 };
 REGISTER_SERIALIZABLE(McaEngine);
 } // namespace yade

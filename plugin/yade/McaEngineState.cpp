@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // McaEngine: what it writes to bodies and files and shows to Python.
+#include "McaBodies.hpp"
 #include "McaEngine.hpp"
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
@@ -9,61 +10,51 @@
 namespace yade {
 using mca::automata::Store;
 
-void McaEngine::writeBodies(Scene* scene)
-{
-	const Store& S = solver->store;
-	writtenPos.resize(order.size()), writtenVel.resize(order.size()), writtenSpin.resize(order.size());
-	const long n = long(order.size());
-	for (long q = 0; q < n; q++) {
-		const auto& b = scene->bodies->body[order[q]];
-		if (!b) continue;
-		const size_t i = solver->indexOf(order[q]);
-		State&       s = *b->state;
-		s.se3.position[0] = S.x[i], s.se3.position[1] = S.y[i];
-		s.vel             = Vector3r(S.vx[i], S.vy[i], s.vel[2]);
-		s.angVel[2]       = S.omega[i];
-		s.se3.orientation = Quaternionr(AngleAxisr(S.angle[i], Vector3r::UnitZ()));
-		writtenPos[q] = s.se3.position, writtenVel[q] = s.vel, writtenSpin[q] = s.angVel[2];
-		if (auto* m = dynamic_cast<McaState*>(&s)) {
-			m->pressure = S.P[i], m->volumeRatio = S.J[i], m->plasticStrain = S.eqps[i], m->temperature = S.temperature[i], m->stressZZ = S.szz[i];
-			m->equivalentStress = solver->equivalentStress(i);
-			m->links            = __builtin_popcount(S.flags[i] & mca::automata::linkBits);
-			m->brokenLinks      = __builtin_popcount((S.flags[i] >> mca::automata::hadShift) & mca::automata::linkBits) - m->links;
-			if (!S.heat.empty()) m->dissipated = S.heat[i];
-		}
-	}
-	stale       = false;
-	lastWritten = scene->iter;
-	if (scene->trackEnergy) writeEnergies(scene);
-}
-
 void McaEngine::writeEnergies(Scene* scene)
 {
 	const auto  a       = solver->account();
-	const char* names[] = { "mcaKinetic", "mcaVolumetric", "mcaDeviatoric", "mcaPlastic", "mcaViscous", "mcaFriction", "mcaFracture", "mcaCoupling", "mcaBoundary", "mcaExternal", "mcaHalfStep" };
-	const Real  values[] = { a.kinetic, a.volumetric, a.deviatoric, a.plastic, a.viscous, a.friction, a.fracture, a.coupling, a.boundary, -a.external, a.centre };
-	for (int k = 0; k < 11; k++)
+	const char* names[] = { "mcaKinetic", "mcaVolumetric", "mcaDeviatoric", "mcaPlastic", "mcaViscous", "mcaFriction", "mcaFracture", "mcaCoupling", "mcaBoundary", "mcaLeft", "mcaExternal", "mcaHalfStep" };
+	const Real  values[] = { a.kinetic, a.volumetric, a.deviatoric, a.plastic, a.viscous, a.friction, a.fracture, a.coupling, a.boundary, a.left, -a.external, a.centre };
+	for (int k = 0; k < 12; k++)
 		scene->energy->set(values[k], names[k], energyIndex[k]);
 }
 
 void McaEngine::writeBack()
 {
-	if (!solver) return;
-	writeBodies(Omega::instance().getScene().get());
-	checkBodies = true;
+	locked([&] {
+		const auto scene = myScene("sync");
+		if (solver && home.expired()) settleIn(scene.get()); // loaded, not yet run
+		if (solver && stale) writeBodies(scene.get());
+	});
 }
 
 void McaEngine::reload()
 {
-	checkBodies = true;
+	locked([&] {
+		const auto scene = myScene("reload");
+		looked           = true;
+		if (solver && stale && !home.expired()) adoptChanges(scene.get());
+	});
 }
 
 void McaEngine::preSave(McaEngine&)
 {
-	state.clear();
-	if (!solver) return;
-	const string bytes = solver->save();
-	state.put(bytes.data(), bytes.size());
+	locked([&] {
+		state.clear();
+		bodiesSaved = true;
+		const auto scene = Omega::instance().getScene();
+		if (solver && standsIn(*scene)) {
+			settleIn(scene.get());
+			try { // what a script has changed counts in the file, too; what is refused will be refused again
+				if (looked && solver) ensureBuilt(scene.get());
+			} catch (const std::exception&) {
+			}
+			if (solver && stale) writeBodies(scene.get()); // engines are saved before bodies
+		}
+		if (!solver) return;
+		const string bytes = solver->save();
+		state.put(bytes.data(), bytes.size());
+	});
 }
 
 void McaEngine::postLoad(McaEngine&)
@@ -75,120 +66,153 @@ void McaEngine::postLoad(McaEngine&)
 	auto fresh = shared_ptr<mca::automata::Solver>(new mca::automata::Solver);
 	fresh->load(string(bytes.begin(), bytes.end()));
 	solver = fresh;
-	loaded = true;
+	home.reset(), bodies.clear(), same.clear(), known.clear();
+	looked = true, stale = false;
 	state.clear();
+}
+
+/// f() of the present state, under the lock; the bodies are gathered if that has not been done.
+template <class F> auto McaEngine::read(F&& f)
+{
+	return locked([&] {
+		const auto present = Omega::instance().getScene();
+		if (!solver || (looked && standsIn(*present))) ensureBuilt(present.get());
+		return f();
+	});
 }
 
 py::object McaEngine::identifiers()
 {
-	if (!solver) ensureBuilt(Omega::instance().getScene().get());
-	return sdk::arrayCopy(order.data(), { Py_ssize_t(order.size()) });
+	const vector<int> now = read([&] { return order; });
+	return sdk::arrayCopy(now.data(), { Py_ssize_t(now.size()) });
 }
 
 py::object McaEngine::fieldByName(const string& name)
 {
-	if (!solver) ensureBuilt(Omega::instance().getScene().get());
-	const Store& S = solver->store;
-	const std::map<string, const vector<Real>*> plain = {
-		{ "x", &S.x }, { "y", &S.y }, { "vx", &S.vx }, { "vy", &S.vy }, { "omega", &S.omega }, { "angle", &S.angle }, { "mass", &S.mass }, { "pressure", &S.P }, { "volumeRatio", &S.J },
-		{ "plasticStrain", &S.eqps }, { "temperature", &S.temperature }, { "stressZZ", &S.szz }, { "fx", &S.fx }, { "fy", &S.fy }, { "strength", &S.strength }, { "diameter", &S.diameter }, { "weight", &S.weight }
-	};
-	vector<Real> out(order.size());
-	auto         fill = [&](auto value) {
-                for (size_t q = 0; q < order.size(); q++)
-                        out[q] = value(size_t(solver->indexOf(order[q])));
-	};
-	auto it = plain.find(name);
-	if (it != plain.end()) fill([&](size_t i) { return (*it->second)[i]; });
-	else if (name == "equivalentStress") fill([&](size_t i) { return solver->equivalentStress(i); });
-	else if (name == "links") fill([&](size_t i) { return Real(__builtin_popcount(S.flags[i] & mca::automata::linkBits)); });
-	else if (name == "brokenLinks") fill([&](size_t i) { return Real(__builtin_popcount((S.flags[i] >> mca::automata::hadShift) & mca::automata::linkBits) - __builtin_popcount(S.flags[i] & mca::automata::linkBits)); });
-	else if (name == "material") fill([&](size_t i) { return Real(S.species[S.speciesOf(i)].material); });
-	else {
-		string list;
-		for (auto& p : plain)
-			list += p.first + ", ";
-		throw std::runtime_error("McaEngine.field: '" + name + "' is unknown; known are " + list + "equivalentStress, links, brokenLinks, material.");
-	}
+	const vector<Real> out = read([&] {
+		const Store& S = solver->store;
+		const std::map<string, const vector<Real>*> plain = {
+			{ "x", &S.x }, { "y", &S.y }, { "vx", &S.vx }, { "vy", &S.vy }, { "omega", &S.omega }, { "angle", &S.angle }, { "mass", &S.mass }, { "pressure", &S.P }, { "volumeRatio", &S.J },
+			{ "plasticStrain", &S.eqps }, { "temperature", &S.temperature }, { "stressZZ", &S.szz }, { "fx", &S.fx }, { "fy", &S.fy }, { "strength", &S.strength }, { "diameter", &S.diameter }, { "weight", &S.weight }
+		};
+		const auto   had  = [&](size_t i) { return __builtin_popcount((S.flags[i] >> mca::automata::hadShift) & mca::automata::linkBits); };
+		const auto   have = [&](size_t i) { return __builtin_popcount(S.flags[i] & mca::automata::linkBits); };
+		vector<Real> v(order.size());
+		auto         fill = [&](auto value) {
+                        for (size_t q = 0; q < order.size(); q++)
+                                v[q] = value(size_t(solver->indexOf(order[q])));
+		};
+		auto it = plain.find(name);
+		if (it != plain.end()) fill([&](size_t i) { return (*it->second)[i]; });
+		else if (name == "equivalentStress") fill([&](size_t i) { return solver->equivalentStress(i); });
+		else if (name == "links") fill([&](size_t i) { return Real(have(i)); });
+		else if (name == "brokenLinks") fill([&](size_t i) { return Real(had(i) - have(i)); });
+		else if (name == "material") fill([&](size_t i) { return Real(S.species[size_t(S.speciesOf(i))].material); });
+		else {
+			string list;
+			for (auto& p : plain)
+				list += p.first + ", ";
+			throw std::runtime_error("McaEngine.field: name = '" + name + "' is unknown; it must be one of " + list + "equivalentStress, links, brokenLinks, material.");
+		}
+		return v;
+	});
 	return sdk::arrayCopy(out.data(), { Py_ssize_t(out.size()) });
 }
 
 py::dict McaEngine::energies()
 {
-	py::dict d;
-	if (!solver) ensureBuilt(Omega::instance().getScene().get());
-	const auto a = solver->account();
+	const auto a = read([&] { return solver->account(); });
+	py::dict   d;
 	d["kinetic"] = a.kinetic, d["volumetric"] = a.volumetric, d["deviatoric"] = a.deviatoric, d["plastic"] = a.plastic, d["viscous"] = a.viscous, d["friction"] = a.friction;
-	d["fracture"] = a.fracture, d["coupling"] = a.coupling, d["boundary"] = a.boundary, d["external"] = a.external, d["halfStep"] = a.centre, d["total"] = a.total(), d["bookedError"] = a.bookedError();
+	d["fracture"] = a.fracture, d["coupling"] = a.coupling, d["boundary"] = a.boundary, d["left"] = a.left, d["external"] = a.external, d["halfStep"] = a.centre, d["total"] = a.total(), d["bookedError"] = a.bookedError();
 	d["bookedVolumetric"] = a.bookedVolumetric, d["bookedDeviatoric"] = a.bookedDeviatoric, d["bookedViscous"] = a.bookedViscous, d["kineticStart"] = a.kineticStart;
 	d["momentumX"] = a.px, d["momentumY"] = a.py, d["angularMomentum"] = a.angular, d["impulseX"] = a.impulseX, d["impulseY"] = a.impulseY;
 	return d;
 }
 
-py::dict McaEngine::counters()
+py::dict McaEngine::countersNow()
 {
+	struct Now {
+		mca::automata::Counters c;
+		long                    awake = 0, blocks = 0, contacts = 0;
+		bool                    any = false;
+	};
+	const Now n = locked([&] {
+		Now now;
+		if (!solver) return now;
+		now.any = true, now.c = solver->counters, now.blocks = long(solver->store.blocks.size()), now.contacts = long(solver->contacts.size() / 2);
+		for (auto& b : solver->store.blocks)
+			now.awake += b.awake;
+		return now;
+	});
 	py::dict d;
-	if (!solver) return d;
-	const auto& c = solver->counters;
-	long awake = 0;
-	for (auto& b : solver->store.blocks)
-		awake += b.awake;
-	d["steps"] = c.steps, d["searches"] = c.searches, d["sorts"] = c.sorts, d["blockSteps"] = c.blockSteps, d["blocks"] = long(solver->store.blocks.size()), d["awake"] = awake;
-	d["brokenLinks"] = c.brokenLinks, d["clamped"] = c.clamped, d["deepest"] = std::min(c.deepest, 1.), d["contacts"] = long(solver->contacts.size() / 2);
+	if (!n.any) return d;
+	d["steps"] = n.c.steps, d["searches"] = n.c.searches, d["sorts"] = n.c.sorts, d["blockSteps"] = n.c.blockSteps, d["blocks"] = n.blocks, d["awake"] = n.awake;
+	d["brokenLinks"] = n.c.brokenLinks, d["clamped"] = n.c.clamped, d["deepest"] = std::min(n.c.deepest, 1.), d["contacts"] = n.contacts;
 	return d;
 }
 
 py::dict McaEngine::phases()
 {
-	py::dict d;
-	if (!solver) return d;
-	const auto& c = solver->counters;
+	mca::automata::Counters c;
+	const bool any = locked([&] { return solver ? (c = solver->counters, true) : false; });
+	py::dict   d;
+	if (!any) return d;
 	d["search"] = c.nsSearch, d["density"] = c.nsDensity, d["stress"] = c.nsStress, d["contact"] = c.nsContact, d["force"] = c.nsForce, d["fracture"] = c.nsFracture, d["integration"] = c.nsIntegrate;
 	return d;
 }
 
 py::list McaEngine::linkList()
 {
-	py::list l;
-	if (!solver) ensureBuilt(Omega::instance().getScene().get());
-	for (auto& p : solver->links())
+	const auto pairs = read([&] { return solver->links(); });
+	py::list   l;
+	for (auto& p : pairs)
 		l.append(py::make_tuple(p.first, p.second));
 	return l;
 }
 
+long McaEngine::automataCount() const
+{
+	return locked([&] { return solver ? long(order.size()) : 0L; });
+}
+
 Vector2r McaEngine::momentum()
 {
-	if (!solver) ensureBuilt(Omega::instance().getScene().get());
-	const auto a = solver->account();
+	const auto a = read([&] { return solver->account(); });
 	return Vector2r(a.px, a.py);
 }
 
 void McaEngine::setViscous(const vector<int>& ids, const Vector2r& normal)
 {
-	const Scene* scene = Omega::instance().getScene().get();
-	const bool   alongX = std::fabs(normal[0]) > 0;
-	if (!(std::fabs(normal.norm() - 1.) < 1e-9 && (normal[0] == 0 || normal[1] == 0)))
-		throw std::runtime_error("McaEngine.setViscous: normal must be (1,0), (-1,0), (0,1) or (0,-1).");
-	// width of the boundary that one body stands for: extent of the set over the number of bodies in a line
-	for (int id : ids) {
-		if (id < 0 || size_t(id) >= scene->bodies->body.size() || !scene->bodies->body[id]) throw std::runtime_error("McaEngine.setViscous: there is no body " + std::to_string(id) + ".");
-		const auto* m = dynamic_cast<const McaMat*>(scene->bodies->body[id]->material.get());
-		if (!m) throw std::runtime_error("McaEngine.setViscous: body " + std::to_string(id) + " has no McaMat.");
-	}
-	if (ids.empty()) return;
-	Real lo = 1e300, hi = -1e300;
-	for (int id : ids) {
-		const Real t = scene->bodies->body[id]->state->se3.position[alongX ? 1 : 0];
-		lo = std::min(lo, t), hi = std::max(hi, t);
-	}
-	for (int id : ids) {
-		const auto& b     = scene->bodies->body[id];
-		const auto  mat   = static_cast<const McaMat*>(b->material.get())->toMaterial();
-		const Real  d     = 2. * static_cast<Sphere*>(b->shape.get())->radius;
-		const Real  width = (hi - lo + d) / ids.size();
-		const Real  bn = mat.eos.rho0 * mat.cP() * width, bt = mat.eos.rho0 * mat.cS() * width;
-		viscous.push_back(Vector3r(Real(id), alongX ? bn : bt, alongX ? bt : bn));
-		if (solver && solver->indexOf(id) >= 0) solver->setDamping(solver->indexOf(id), viscous.back()[1], viscous.back()[2]);
-	}
+	locked([&] {
+		const auto scene = Omega::instance().getScene();
+		settleIn(scene.get());
+		const bool alongX = std::fabs(normal[0]) > 0;
+		if (!(std::fabs(normal.norm() - 1.) < 1e-9 && (normal[0] == 0 || normal[1] == 0)))
+			throw std::runtime_error("McaEngine.setViscous: normal must be (1,0), (-1,0), (0,1) or (0,-1).");
+		// width of the boundary that one body stands for: extent of the set over the number of bodies in a line
+		Real lo = 1e300, hi = -1e300;
+		for (int id : ids) {
+			if (!scene->bodies->exists(id)) throw std::runtime_error("McaEngine.setViscous: ids: there is no body " + std::to_string(id) + "; each must be the id of an automaton.");
+			const auto& b = scene->bodies->body[size_t(id)];
+			if (!isAutomaton(b) || !b->state) throw std::runtime_error("McaEngine.setViscous: ids: body " + std::to_string(id) + " is no automaton; it must have material McaMat, shape Sphere and a state.");
+			const Real t = b->state->se3.position[alongX ? 1 : 0];
+			if (!std::isfinite(t)) throw std::runtime_error("McaEngine.setViscous: ids: the position of body " + std::to_string(id) + " must be finite.");
+			lo = std::min(lo, t), hi = std::max(hi, t);
+		}
+		vector<Vector3r> added;
+		for (int id : ids) {
+			const auto& b     = scene->bodies->body[size_t(id)];
+			const auto  mat   = static_cast<const McaMat*>(b->material.get())->toMaterial();
+			const Real  d     = 2. * static_cast<Sphere*>(b->shape.get())->radius;
+			const Real  width = (hi - lo + d) / Real(ids.size());
+			const Real  bn = mat.eos.rho0 * mat.cP() * width, bt = mat.eos.rho0 * mat.cS() * width;
+			added.push_back(Vector3r(Real(id), alongX ? bn : bt, alongX ? bt : bn));
+		}
+		for (const auto& v : added) {
+			viscous.push_back(v);
+			if (solver && isMine(int(v[0]))) solver->setDamping(size_t(solver->indexOf(int(v[0]))), v[1], v[2]);
+		}
+	});
 }
 } // namespace yade

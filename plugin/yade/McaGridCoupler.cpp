@@ -33,6 +33,13 @@ namespace {
 	}
 } // namespace
 
+/// f() under the locks of both sides.
+template <class F> void McaGridCoupler::inBoth(F&& f)
+{
+	if (!foundAutomata) return foundGrid->locked(f);
+	foundAutomata->locked([&] { foundGrid->locked(f); });
+}
+
 vector<McaGridCoupler*> McaGridCoupler::all(Scene* scene) const
 {
 	vector<McaGridCoupler*> v;
@@ -115,6 +122,7 @@ void McaGridCoupler::makeRow(Scene* scene)
 	s.inX = b.x[b.node(i, j)], s.inY = b.y[b.node(i, j)];
 	mca::interface::MapOptions o;
 	o.tolerance = tolerance, o.smallestRatio = ratio[0], o.largestRatio = ratio[1], o.otherMaterials = otherMaterials, o.onlyGiven = !ids.empty();
+	if (!(ratio[0] > 0 && ratio[0] <= ratio[1] && ratio[1] <= 1e6)) throw mca::Error("McaGridCoupler: ratio = (" + std::to_string(ratio[0]) + ", " + std::to_string(ratio[1]) + ") must be two rising numbers above 0 and at most 1e6.");
 	if (!(tolerance > 0 && tolerance <= 0.05)) throw mca::Error("McaGridCoupler: tolerance = " + std::to_string(tolerance) + " must be above 0 and at most 0.05 diameters.");
 	vector<mca::Material> keep;
 	row = mca::interface::makeMap(candidates(scene, keep), s, o);
@@ -139,17 +147,54 @@ void McaGridCoupler::tieRow(Scene* scene)
 			st.vel = Vector3r(v.vx, v.vy, 0);
 		}
 	}
+	foundGrid->carry();
+	tiedAs = asText();
+	home = Omega::instance().getScene();
 	tied = true;
+}
+
+/// What tying the row reads, apart from the engines.
+string McaGridCoupler::asText() const
+{
+	std::ostringstream s;
+	s.precision(17);
+	s << "block " << block << ", side '" << side << "', start " << start << ", end " << end << ", tolerance " << tolerance << ", ratio (" << ratio[0] << ", " << ratio[1] << "), otherMaterials " << otherMaterials << ", ids";
+	for (int id : ids)
+		s << ' ' << id;
+	return s.str();
+}
+
+/// The tied bodies are those of one scene; a coupler taken to another one would move whoever has their numbers there.
+void McaGridCoupler::checkHome(Scene* scene)
+{
+	if (const string text = asText(); text != tiedAs || (automata && automata != foundAutomata) || (grid && grid != foundGrid))
+		throw mca::Error("McaGridCoupler: its attributes were changed after the row was tied, when they are read (now " + text + "; tied as " + tiedAs + "; or automata or grid); set them back, or make a new scene.");
+	const auto now = home.lock();
+	if (now.get() == scene) return;
+	if (!loaded) throw mca::Error("McaGridCoupler: it has tied bodies of another scene (O.reset, O.load, ...); take the coupler of the present scene from O.engines, or make new couplers and a new grid.");
+	for (const Carried& c : row) {
+		const bool there = foundAutomata ? foundAutomata->automata().indexOf(c.id) >= 0 : scene->bodies->exists(c.id);
+		if (!there || c.a < 0 || c.b < 0 || c.a >= int(foundGrid->grid().open().size()) || c.b >= int(foundGrid->grid().open().size()))
+			throw mca::Error("McaGridCoupler: the saved row holds body " + std::to_string(c.id) + " on nodes " + std::to_string(c.a) + " and " + std::to_string(c.b) + ", which the saved scene does not have; the file is damaged or was changed.");
+	}
+	loaded = false;
+	home   = Omega::instance().getScene();
 }
 
 void McaGridCoupler::prepare(Scene* scene)
 {
 	find(scene);
-	if (tied) return;
+	if (tied) {
+		if (foundAutomata && !foundAutomata->built()) throw mca::Error("McaGridCoupler: its row is tied, but its McaEngine has no automata; a new engine cannot take the place of the one that was tied.");
+		return checkHome(scene);
+	}
 	const auto couplers = all(scene);
 	try { // all rows first: nothing is tied unless every row fits
 		for (auto* c : couplers)
-			if (!c->tied) c->find(scene), c->makeRow(scene);
+			if (!c->tied) {
+				c->find(scene);
+				c->inBoth([&] { c->makeRow(scene); });
+			}
 	} catch (...) {
 		for (auto* c : couplers) {
 			if (c->tied) continue;
@@ -159,7 +204,7 @@ void McaGridCoupler::prepare(Scene* scene)
 		throw;
 	}
 	for (auto* c : couplers)
-		if (!c->tied) c->tieRow(scene);
+		if (!c->tied) c->inBoth([&] { c->tieRow(scene); });
 }
 
 void McaGridCoupler::forcesToNodes(Scene* scene)
@@ -207,27 +252,41 @@ void McaGridCoupler::motionToRow(Scene* scene, bool positions)
 
 void McaGridCoupler::action()
 {
+	guarded([&] {
+		try {
+			step();
+		} catch (...) {
+			McaSolverEngine::settle(scene);
+			throw;
+		}
+	});
+}
+
+void McaGridCoupler::step()
+{
 	timingDeltas->start();
 	prepare(scene);
 	if ((foundAutomata && !foundAutomata->forcesReady) || !foundGrid->grid().between())
 		throw mca::Error("McaGridCoupler: it must follow McaEngine (or InteractionLoop) and McaGridEngine in O.engines, and both must run.");
-	forcesToNodes(scene);
+	inBoth([&] { forcesToNodes(scene); });
 	const auto couplers = all(scene);
 	timingDeltas->checkpoint("forces to the nodes");
 	if (couplers.back() != this) return;
 	// the last one moves all
 	std::set<McaSolverEngine*> done;
 	for (auto* c : couplers)
-		if (done.insert(c->foundGrid.get()).second) c->foundGrid->integrate(scene);
+		if (done.insert(c->foundGrid.get()).second) c->foundGrid->locked([&] { c->foundGrid->integrate(scene); });
 	timingDeltas->checkpoint("integration of the grid");
 	for (auto* c : couplers)
-		c->motionToRow(scene, false);
+		c->inBoth([&] { c->motionToRow(scene, false); });
 	timingDeltas->checkpoint("motion to the row");
 	for (auto* c : couplers)
-		if (c->foundAutomata && done.insert(c->foundAutomata.get()).second) c->foundAutomata->integrate(scene);
+		if (c->foundAutomata && done.insert(c->foundAutomata.get()).second) c->foundAutomata->locked([&] { c->foundAutomata->integrate(scene); });
 	timingDeltas->checkpoint("integration of the automata");
 	for (auto* c : couplers)
-		if (c->foundAutomata) c->motionToRow(scene, true);
+		if (c->foundAutomata) c->inBoth([&] { c->motionToRow(scene, true); });
+	for (auto* c : couplers)
+		if (c->foundAutomata && done.erase(c->foundAutomata.get())) c->foundAutomata->locked([&] { c->foundAutomata->finish(scene); });
 	timingDeltas->checkpoint("motion to the row");
 }
 
@@ -245,7 +304,8 @@ void McaGridCoupler::postLoad(McaGridCoupler&)
 	sdk::BlobReader in(state);
 	in.get(row);
 	in.get(places);
-	tied = !row.empty();
+	tied = loaded = !row.empty();
+	home.reset();
 	state.clear();
 }
 
@@ -278,11 +338,12 @@ py::dict McaGridCoupler::energies()
 	std::set<McaSolverEngine*> done;
 	for (auto* c : all(now)) {
 		c->prepare(now);
+		c->inBoth([&] {
 		if (c->foundAutomata && done.insert(c->foundAutomata.get()).second) {
 			const auto a = c->foundAutomata->automata().account();
 			kinetic += a.kinetic, total += a.total(), booked += a.bookedError(), px += a.px, py_ += a.py, jx += a.impulseX, jy += a.impulseY, turn += a.angular;
 		}
-		if (!done.insert(c->foundGrid.get()).second) continue;
+		if (!done.insert(c->foundGrid.get()).second) return;
 		const auto& g = c->foundGrid->grid();
 		const auto  e = g.energy();
 		kinetic += e.kinetic, total += e.total(), booked += e.total(), px += e.momentumX, py_ += e.momentumY, jx += e.impulseX, jy += e.impulseY;
@@ -297,6 +358,7 @@ py::dict McaGridCoupler::energies()
 		const auto& n = g.open();
 		for (size_t k = 0; k < size_t(n.size()); k++)
 			turn += n.mass[k] * (n.x[k] * n.vy[k] - n.y[k] * n.vx[k]);
+		});
 	}
 	py::dict d;
 	d["kinetic"] = kinetic, d["total"] = total, d["booked"] = booked, d["momentumX"] = px, d["momentumY"] = py_, d["impulseX"] = jx, d["impulseY"] = jy, d["angularMomentum"] = turn;

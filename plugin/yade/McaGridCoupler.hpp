@@ -42,6 +42,7 @@ public:
 		((Vector2r, ratio, Vector2r(0.5, 4.5), , "smallest and largest edge of the grid on the interface, over the diameter [-]"))
 		((bool, otherMaterials, false, , "allow unlike materials on the two sides"))
 		((sdk::Blob, state, , Attr::hidden, "the map"))
+		((string, tiedAs, "", Attr::hidden, "the attributes with which the row was tied"))
 		,
 		timingDeltas = shared_ptr<TimingDeltas>(new TimingDeltas);
 		,
@@ -56,10 +57,15 @@ public:
 private:
 	vector<mca::interface::Carried> row;
 	vector<long>                    places; ///< of each in the solver's order of tied automata
-	bool                            tied = false;
+	bool                            tied = false, loaded = false;
+	boost::weak_ptr<Scene>          home; ///< scene of the tied bodies
 	shared_ptr<McaEngine>           foundAutomata;
 	shared_ptr<McaGridEngine>       foundGrid;
+	void                            step();
 	void                            find(Scene*);
+	string                          asText() const;
+	void                            checkHome(Scene*);
+	template <class F> void         inBoth(F&& f);
 	void                            makeRow(Scene*);
 	void                            tieRow(Scene*);
 	vector<mca::interface::RowPoint> candidates(Scene*, vector<mca::Material>& keep) const;

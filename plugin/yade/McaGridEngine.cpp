@@ -22,6 +22,10 @@ Real McaGridEngine::criticalTimeStep() const { return solver && solver->blocks()
 void McaGridEngine::computeForces(Scene* s)
 {
 	grid().setThreads(ompThreads);
+	if (solver->between()) { // something has stopped the step half-way: it is finished as it was begun
+		s->dt = solver->stepBegun();
+		return;
+	}
 	solver->computeForces(s->dt);
 }
 
@@ -36,28 +40,32 @@ void McaGridEngine::integrate(Scene* s)
 		s->energy->set(values[k], names[k], energyIndex[k]);
 }
 
-void McaGridEngine::action()
+void McaGridEngine::step()
 {
 	findCoupler(scene);
-	if (coupled) return computeForces(scene);
-	if (adaptive) {
+	locked([&] {
+		if (coupled) return computeForces(scene);
 		if (!(dtFactor > 0 && dtFactor <= 1)) throw mca::Error("McaGridEngine: dtFactor = " + std::to_string(dtFactor) + " must be above 0 and at most 1.");
-		const Real limit = dtFactor * grid().criticalTimeStep();
-		scene->dt        = solver->steps() > 0 ? std::min(limit, 1.1 * scene->dt) : limit;
-	}
-	timingDeltas->start();
-	computeForces(scene);
-	timingDeltas->checkpoint("cells and inner nodes");
-	integrate(scene);
-	timingDeltas->checkpoint("open nodes");
+		if (adaptive && grid().blocks()) {
+			const Real limit = dtFactor * grid().criticalTimeStep();
+			scene->dt        = solver->steps() > 0 && scene->dt > 0 ? std::min(limit, 1.1 * scene->dt) : limit;
+		}
+		timingDeltas->start();
+		computeForces(scene);
+		timingDeltas->checkpoint("cells and inner nodes");
+		integrate(scene);
+		timingDeltas->checkpoint("open nodes");
+	});
 }
 
 void McaGridEngine::preSave(McaGridEngine&)
 {
-	state.clear();
-	if (!solver) return;
-	const vector<char> bytes = solver->save();
-	state.put(bytes);
+	locked([&] {
+		state.clear();
+		if (!solver) return;
+		const vector<char> bytes = solver->save();
+		state.put(bytes);
+	});
 }
 
 void McaGridEngine::postLoad(McaGridEngine&)

@@ -10,8 +10,13 @@ namespace yade {
 
 class McaGridEngine : public McaSolverEngine {
 public:
-	void action() override;
+	void step() override;
 	Real criticalTimeStep() const override;
+	bool carriesRows() const override { return carries; }
+	bool setsStep() const override { return adaptive && !dead; }
+	void stepIsSet() override { adaptive = false; }
+	/// A row is tied to it from now on.
+	void carry() { carries = true; }
 	void preSave(McaGridEngine&);
 	void postLoad(McaGridEngine&);
 
@@ -23,8 +28,14 @@ public:
 	// Python: set-up
 	int  addRectangle(shared_ptr<Material> material, py::object xs, py::object ys, const string& name, Real hourglass, bool edgeViscosity);
 	int  addBlock(shared_ptr<Material> material, py::object x, py::object y, const string& name, Real hourglass, bool edgeViscosity);
-	void openInteriorNode(int block, int i, int j) { grid().openInteriorNode(block, i, j); }
-	int  openNode(int block, int i, int j) { return grid().openNode(block, i, j); }
+	void openInteriorNode(int block, int i, int j)
+	{
+		locked([&] { grid().openInteriorNode(block, i, j); });
+	}
+	int openNode(int block, int i, int j)
+	{
+		return locked([&] { return grid().openNode(block, i, j); });
+	}
 	py::list sideNodes(int block, const string& side, int start, int end);
 	void fix(int block, const string& side, bool x, bool y, int start, int end);
 	void fixNodes(py::object nodes, bool x, bool y);
@@ -43,7 +54,10 @@ public:
 	py::dict   probeLine(const Vector2r& from, const Vector2r& to, int n);
 	py::dict   energies();
 	py::list   blockList();
-	string     criticalCell() { return grid().criticalCell(); }
+	string     criticalCell()
+	{
+		return locked([&] { return grid().criticalCell(); });
+	}
 	Real       awake() const { return solver ? solver->awakeFraction() : 0.; }
 	Real       time() const { return solver ? solver->time() : 0.; }
 	long       steps() const { return solver ? solver->steps() : 0; }
@@ -59,6 +73,7 @@ public:
 		((bool, sleeping, true, , "leave out cells that nothing has reached; changes no result, bit for bit; set before the first block"))
 		((bool, adaptive, true, , "set O.dt in every step to dtFactor times the largest stable one, growing at most 10 % a step; otherwise O.dt is checked only"))
 		((Real, dtFactor, 0.6, , "share of the largest stable time step [-], 0 < dtFactor <= 1"))
+		((bool, carries, false, Attr::hidden, "rows of automata are tied to it"))
 		((sdk::Blob, state, , Attr::hidden, "state of the solver"))
 		,
 		timingDeltas = shared_ptr<TimingDeltas>(new TimingDeltas);
@@ -96,6 +111,7 @@ private:
 	shared_ptr<mca::grid::Grid>             solver;
 	vector<shared_ptr<vector<double>>>      pressures; ///< buffers behind the views, one per block
 	int                                     energyIndex[6] = { -1, -1, -1, -1, -1, -1 };
+	void setVelocities(int block, const vector<double>& v, const vector<long>& shape);
 	mca::grid::BlockOptions blockOptions(const string& name, Real hourglass, bool edgeViscosity) const;
 };
 REGISTER_SERIALIZABLE(McaGridEngine);

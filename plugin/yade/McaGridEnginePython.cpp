@@ -69,7 +69,9 @@ mca::grid::BlockOptions McaGridEngine::blockOptions(const string& name, Real hou
 
 int McaGridEngine::addRectangle(shared_ptr<Material> material, py::object xs, py::object ys, const string& name, Real hourglass, bool edgeViscosity)
 {
-	return grid().addRectangle(constants(material), numbers(xs), numbers(ys), blockOptions(name, hourglass, edgeViscosity));
+	const auto m = constants(material);
+	const auto x = numbers(xs), y = numbers(ys);
+	return locked([&] { return grid().addRectangle(m, x, y, blockOptions(name, hourglass, edgeViscosity)); });
 }
 
 int McaGridEngine::addBlock(shared_ptr<Material> material, py::object x, py::object y, const string& name, Real hourglass, bool edgeViscosity)
@@ -77,43 +79,85 @@ int McaGridEngine::addBlock(shared_ptr<Material> material, py::object x, py::obj
 	vector<long>         sx, sy;
 	const vector<double> nx = numbers(x, &sx), ny = numbers(y, &sy);
 	if (sx.size() != 2 || sx != sy) throw mca::Error("block '" + name + "': x and y must be arrays of the same shape (rows+1, cells per row+1).");
-	return grid().addBlock(constants(material), int(sx[1]) - 1, int(sx[0]) - 1, nx, ny, blockOptions(name, hourglass, edgeViscosity));
+	const auto m = constants(material);
+	return locked([&] { return grid().addBlock(m, int(sx[1]) - 1, int(sx[0]) - 1, nx, ny, blockOptions(name, hourglass, edgeViscosity)); });
 }
 
 py::list McaGridEngine::sideNodes(int block, const string& side, int start, int end)
 {
 	py::list l;
-	for (int n : grid().sideNodes(block, sideOf(side), start, end))
+	for (int n : locked([&] { return grid().sideNodes(block, sideOf(side), start, end); }))
 		l.append(n);
 	return l;
 }
 
-void McaGridEngine::fix(int block, const string& side, bool x, bool y, int start, int end) { grid().fix(grid().sideNodes(block, sideOf(side), start, end), x, y); }
-void McaGridEngine::fixNodes(py::object nodes, bool x, bool y) { grid().fix(nodeList(nodes), x, y); }
-void McaGridEngine::symmetry(int block, const string& side) { grid().symmetry(block, sideOf(side)); }
+void McaGridEngine::fix(int block, const string& side, bool x, bool y, int start, int end)
+{
+	locked([&] { grid().fix(grid().sideNodes(block, sideOf(side), start, end), x, y); });
+}
+
+void McaGridEngine::fixNodes(py::object nodes, bool x, bool y)
+{
+	const auto n = nodeList(nodes);
+	locked([&] { grid().fix(n, x, y); });
+}
+
+void McaGridEngine::symmetry(int block, const string& side)
+{
+	locked([&] { grid().symmetry(block, sideOf(side)); });
+}
 
 void McaGridEngine::prescribe(int block, const string& side, py::object vx, py::object vy, int start, int end)
 {
-	const auto nodes = grid().sideNodes(block, sideOf(side), start, end);
-	if (!vx.is_none()) grid().prescribe(nodes, 1, 0, table(vx));
-	if (!vy.is_none()) grid().prescribe(nodes, 0, 1, table(vy));
+	const bool  x = !vx.is_none(), y = !vy.is_none();
+	const Table tx = x ? table(vx) : Table(0), ty = y ? table(vy) : Table(0);
+	locked([&] {
+		const auto nodes = grid().sideNodes(block, sideOf(side), start, end);
+		if (x) grid().prescribe(nodes, 1, 0, tx);
+		if (y) grid().prescribe(nodes, 0, 1, ty);
+	});
 }
 
-void McaGridEngine::prescribeNodes(py::object nodes, const Vector2r& d, py::object velocity) { grid().prescribe(nodeList(nodes), d[0], d[1], table(velocity)); }
+void McaGridEngine::prescribeNodes(py::object nodes, const Vector2r& d, py::object velocity)
+{
+	const auto  n = nodeList(nodes);
+	const Table t = table(velocity);
+	locked([&] { grid().prescribe(n, d[0], d[1], t); });
+}
 
 void McaGridEngine::traction(int block, const string& side, py::object x, py::object y, int start, int end)
 {
-	grid().traction(block, sideOf(side), table(x), table(y), start, end);
+	const Table tx = table(x), ty = table(y);
+	locked([&] { grid().traction(block, sideOf(side), tx, ty, start, end); });
 }
 
-void McaGridEngine::pressureLoad(int block, const string& side, py::object p, int start, int end) { grid().pressureLoad(block, sideOf(side), table(p), start, end); }
-void McaGridEngine::viscous(int block, const string& side, int start, int end) { grid().viscous(block, sideOf(side), start, end); }
-void McaGridEngine::force(py::object nodes, py::object fx, py::object fy) { grid().nodalForce(nodeList(nodes), table(fx), table(fy)); }
+void McaGridEngine::pressureLoad(int block, const string& side, py::object p, int start, int end)
+{
+	const Table t = table(p);
+	locked([&] { grid().pressureLoad(block, sideOf(side), t, start, end); });
+}
+
+void McaGridEngine::viscous(int block, const string& side, int start, int end)
+{
+	locked([&] { grid().viscous(block, sideOf(side), start, end); });
+}
+
+void McaGridEngine::force(py::object nodes, py::object fx, py::object fy)
+{
+	const auto  n = nodeList(nodes);
+	const Table tx = table(fx), ty = table(fy);
+	locked([&] { grid().nodalForce(n, tx, ty); });
+}
 
 void McaGridEngine::setVelocity(int block, py::object velocity)
 {
 	vector<long>         shape;
 	const vector<double> v = numbers(velocity, &shape);
+	locked([&] { setVelocities(block, v, shape); });
+}
+
+void McaGridEngine::setVelocities(int block, const vector<double>& v, const vector<long>& shape)
+{
 	if (v.size() == 2) {
 		grid().setVelocity(block, [&](double, double) { return std::array<double, 2> { v[0], v[1] }; });
 		return;
@@ -129,7 +173,10 @@ void McaGridEngine::setVelocity(int block, py::object velocity)
 	});
 }
 
-int McaGridEngine::addGauge(const Vector2r& at, int period) { return grid().addGauge(at[0], at[1], period); }
+int McaGridEngine::addGauge(const Vector2r& at, int period)
+{
+	return locked([&] { return grid().addGauge(at[0], at[1], period); });
+}
 
 py::object McaGridEngine::view(int block, const string& what)
 {
@@ -152,7 +199,7 @@ py::object McaGridEngine::view(int block, const string& what)
 		pressures.resize(size_t(grid().blocks()));
 		auto& v = pressures[size_t(block)];
 		if (!v) v = shared_ptr<vector<double>>(new vector<double>(b.pitch * size_t(b.nj)));
-		grid().pressure(block, v->data());
+		locked([&] { grid().pressure(block, v->data()); });
 		p     = v->data();
 		owner = v;
 	} else
@@ -166,8 +213,10 @@ py::object McaGridEngine::view(int block, const string& what)
 
 py::object McaGridEngine::gaugeHistory(int k)
 {
-	if (k < 0 || k >= grid().gauges()) throw mca::Error("McaGridEngine: there is no gauge " + std::to_string(k) + "; there are " + std::to_string(grid().gauges()) + ".");
-	const auto& h = grid().gauge(k).history;
+	const auto h = locked([&] {
+		if (k < 0 || k >= grid().gauges()) throw mca::Error("McaGridEngine.gauge: number = " + std::to_string(k) + " must be from 0 to " + std::to_string(grid().gauges() - 1) + "; there are " + std::to_string(grid().gauges()) + " gauges.");
+		return grid().gauge(k).history;
+	});
 	static_assert(sizeof(mca::grid::Sample) == 10 * sizeof(double), "a sample is a row of ten numbers");
 	static const double none = 0;
 	return sdk::arrayCopy(h.empty() ? &none : &h[0].time, { Py_ssize_t(h.size()), 10 });
@@ -175,7 +224,7 @@ py::object McaGridEngine::gaugeHistory(int k)
 
 py::dict McaGridEngine::probeLine(const Vector2r& from, const Vector2r& to, int n)
 {
-	const auto s = grid().probeLine(from[0], from[1], to[0], to[1], n);
+	const auto s = locked([&] { return grid().probeLine(from[0], from[1], to[0], to[1], n); });
 	py::dict   d;
 	const auto put = [&](const char* name, double mca::grid::Sample::*member) {
 		vector<double> v;
@@ -192,7 +241,7 @@ py::dict McaGridEngine::probeLine(const Vector2r& from, const Vector2r& to, int 
 
 py::dict McaGridEngine::energies()
 {
-	const mca::grid::Energy e = grid().energy();
+	const mca::grid::Energy e = locked([&] { return grid().energy(); });
 	py::dict                d;
 	d["kinetic"] = e.kinetic, d["internal"] = e.internal, d["total"] = e.total();
 	d["workLoads"] = e.workLoads, d["workExternal"] = e.workExternal, d["workConstraints"] = e.workConstraints, d["workViscous"] = e.workViscous;

@@ -9,6 +9,11 @@ YADE_PLUGIN((McaInfo));
 string McaInfo::isa() const { return mca::isa(); }
 string McaInfo::version() const { return MCA_VERSION; }
 int    McaInfo::threads() const { return mca::threads(); }
-Real   McaInfo::triad(int n) const { return mca::measureTriad(n < 1 ? 1 : n); }
-Real   McaInfo::flops(int n) const { return mca::measureFlops(n < 1 ? 1 : n); }
+static int checked(const char* call, int n)
+{
+	if (n < 1 || n > 1024) throw std::runtime_error(string("McaInfo.") + call + ": threads = " + std::to_string(n) + " must be from 1 to 1024.");
+	return n;
+}
+Real McaInfo::triad(int n) const { return mca::measureTriad(checked("triad", n)); }
+Real McaInfo::flops(int n) const { return mca::measureFlops(checked("flops", n)); }
 } // namespace yade

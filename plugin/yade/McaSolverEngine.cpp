@@ -1,18 +1,77 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include "McaSolverEngine.hpp"
 #include "McaGridCoupler.hpp"
-#include <core/Scene.hpp>
+#include "McaTimeStepper.hpp"
+#include <chrono>
+#include <core/Omega.hpp>
 
 namespace yade {
 YADE_PLUGIN((McaSolverEngine));
 
+void McaSolverEngine::action()
+{
+	lastStep.store(std::this_thread::get_id(), std::memory_order_relaxed);
+	guarded([&] {
+		try {
+			step();
+		} catch (...) {
+			failures++;
+			settle(scene);
+			throw;
+		}
+	});
+}
+
+void McaSolverEngine::settle(Scene* scene)
+{
+	for (const auto& e : scene->engines)
+		if (auto* s = dynamic_cast<McaSolverEngine*>(e.get())) s->bringUpToDate();
+}
+
+void McaSolverEngine::settleNow()
+{
+	const shared_ptr<Scene> now = Omega::instance().getScene();
+	if (now && (inLoop() || !Omega::instance().isRunning())) settle(now.get());
+}
+
+// YADE's pause() returns in the middle of the last step. Scene::subStep is -1 between two steps.
+void McaSolverEngine::endStepUnderWay()
+{
+	const shared_ptr<Scene> now = Omega::instance().getScene();
+	if (!now || inLoop() || now->subStepping) return;
+	PyThreadState* state = PyEval_SaveThread();
+	const long     before = failures;
+	// a step that ends with an error leaves subStep where it was: those of this plugin are counted, those of other engines cost the longest wait
+	for (int wait = 0; wait < 20000 && failures == before; wait++) {
+		if (const_cast<volatile int&>(now->subStep) < 0 || Omega::instance().isRunning()) break;
+		std::this_thread::sleep_for(std::chrono::microseconds(100));
+	}
+	PyEval_RestoreThread(state);
+	settleNow();
+}
+
 void McaSolverEngine::findCoupler(Scene* scene)
 {
-	coupled = false;
+	coupled         = false;
+	int  me         = 0;
+	bool stepper    = false;
+	const McaSolverEngine* other = nullptr;
 	for (const auto& e : scene->engines) {
+		me += e.get() == this;
+		if (e->dead) continue;
+		if (auto* s = dynamic_cast<McaSolverEngine*>(e.get())) {
+			if (s != this && s->setsStep()) other = s;
+		} else if (dynamic_cast<McaTimeStepper*>(e.get())) stepper = true;
 		auto* c = dynamic_cast<McaGridCoupler*>(e.get());
-		if (!c || c->dead || !c->drives(this, scene)) continue;
+		if (!c || !c->drives(this, scene)) continue;
 		coupled = true;
 		c->prepare(scene);
 	}
+	if (scene->isPeriodic) throw mca::Error(getClassName() + ": O.periodic is on, which this engine does not know; set O.periodic = False and hold or drive the sides.");
+	if (me > 1) throw mca::Error(getClassName() + ": the same engine stands " + std::to_string(me) + " times in O.engines, which would make several steps in one; leave it there once.");
+	if (!coupled && carriesRows())
+		throw mca::Error(getClassName() + ": a McaGridCoupler has tied a row to it and is now dead or not in O.engines; a tied row cannot move alone. Put the coupler back, or start from a scene without it.");
+	if (!coupled && !stepper && setsStep() && other)
+		throw mca::Error(getClassName() + " and " + other->getClassName() + ": both set O.dt, so time would not be that of either; put a McaTimeStepper first in O.engines, or set adaptive=False in all but one.");
 }
 } // namespace yade

@@ -2,14 +2,33 @@
 #include "McaTimeStepper.hpp"
 #include "McaDensity.hpp"
 #include "McaEngine.hpp"
-#include "McaGridEngine.hpp"
 #include <core/Scene.hpp>
 #include <pkg/common/Sphere.hpp>
 
 namespace yade {
 YADE_PLUGIN((McaTimeStepper));
 
+bool McaTimeStepper::isActivated()
+{
+	guarded([&] {
+		if (timeStepUpdateInterval < 1 || timeStepUpdateInterval > 2147483647u) throw mca::Error("McaTimeStepper: timeStepUpdateInterval = " + std::to_string(int(timeStepUpdateInterval)) + " must be 1 or more steps.");
+	});
+	return TimeStepper::isActivated();
+}
+
 void McaTimeStepper::computeTimeStep(Scene* scene)
+{
+	guarded([&] {
+		try {
+			choose(scene);
+		} catch (...) {
+			McaSolverEngine::settle(scene);
+			throw;
+		}
+	});
+}
+
+void McaTimeStepper::choose(Scene* scene)
 {
 	const auto need = [](const char* name, Real v, bool ok, const char* range) {
 		if (!ok) throw mca::Error(string("McaTimeStepper: ") + name + " = " + std::to_string(v) + " must be " + range + ".");
@@ -24,10 +43,9 @@ void McaTimeStepper::computeTimeStep(Scene* scene)
 		auto* s = dynamic_cast<McaSolverEngine*>(e.get());
 		if (!s || s->dead) continue;
 		s->prepare(scene);
-		if (auto* a = dynamic_cast<McaEngine*>(s)) a->adaptive = false, automata = true;
-		if (auto* g = dynamic_cast<McaGridEngine*>(s)) g->adaptive = false;
-		if (dynamic_cast<McaDensity*>(s)) automata = true;
-		const Real t = s->criticalTimeStep();
+		s->stepIsSet();
+		automata |= dynamic_cast<McaEngine*>(s) || dynamic_cast<McaDensity*>(s);
+		const Real t = s->safeCriticalTimeStep();
 		if (t < found) found = t, who = s->getClassName() + (s->label.empty() ? "" : " " + s->label);
 	}
 	if (!automata) // automata that no engine of ours has taken yet

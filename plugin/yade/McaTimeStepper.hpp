@@ -5,9 +5,15 @@
 namespace yade {
 class McaTimeStepper : public TimeStepper {
 public:
+	bool isActivated() override; ///< throws when the interval is zero, by which YADE would divide
 	void computeTimeStep(Scene* scene) override;
 	/// A smaller stable step has shown up in this step, before anything has moved.
 	void shorten(Scene* scene, Real found, const string& who);
+
+private:
+	void choose(Scene* scene);
+
+public:
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(McaTimeStepper, TimeStepper,
 		"Sets O.dt to the smallest of all stable steps times a factor, growing at most by a factor from step to step: those of :yref:`McaEngine`, :yref:`McaDensity` and :yref:`McaGridEngine`, and of the bodies of "

@@ -8,7 +8,7 @@ Sweep: pyscripts/yade-mca-batch shock.table shock.py (rule and piston speed). Th
 """
 import numpy as np
 from yade import O, utils
-from yade_mca import exact, materials, packings, scenes
+from yade_mca import exact, materials, scenes
 from yade_mca.expected import expect
 
 utils.readParamsFromTable(noTableOk=True, rule='affine', speed=0.1, rows=300, tolerance=0.01)
@@ -18,34 +18,21 @@ d = 1e-3
 record = materials.get('4340')
 m = materials.mcaMat('4340', eos='shockAdiabat', yieldModel='perfect', yieldStress=0.01 * record.bulkModulus)
 U = speed * record.bulkSoundSpeed
-s = scenes._start(dict(volumeRule=rule, contacts=False))
-pitch = scenes.PITCH * d
-height = 24 * d  # rows run along y; the shock along x, across them
-body = packings.hexagonal(d, packings.Rectangle((0.5 * rows * pitch, 0), (rows * pitch, height)), angle=0.5 * np.pi, rim='full')
-s.add('bar', body, m)
-x = body.positions[:, 0]
-edge = abs(body.positions[:, 1]) > 0.5 * height - 2.5 * d
-for i, first, side in zip(s.ids['bar'].tolist(), x < x.min() + 1.5 * pitch, edge):
-	state = O.bodies[i].state
-	if first:
-		state.vel, state.blockedDOFs = (U, 0, 0), 'xyzXYZ'
-	elif side:
-		state.blockedDOFs = 'yzXYZ'  # uniaxial strain at the upper and lower edge
+s = scenes.start(dict(volumeRule=rule, contacts=False))
+length = rows * scenes.PITCH * d
+# rows run along y; the shock along x, across them, in uniaxial strain
+scenes.addStrip(s, 'bar', scenes.strip(d, 0., length, 24, angle=0.5 * np.pi), m)
+scenes.driveEnd(s, 'bar', U)
 
 ref = exact.piston(m.density, m.bulkSoundSpeed, m.hugoniotSlope, m.shearModulus, m.yieldStress, U)
 level = 0.5 * (U + (ref['precursorU'] if ref['waves'] == 'two' else 0))
-end = 0.8 * rows * pitch / max(ref['D'], ref['precursorD'])
-middle = abs(body.positions[:, 1]) < 0.25 * height
+end = 0.8 * length / max(ref['D'], ref['precursorD'])
 fronts = []
 O.run(1, True)
 for t in np.linspace(0.4, 1, 9) * end:
 	while O.time < t:
 		O.run(10, True)
-	v, at = s.field('bar', 'vx')[middle], s.field('bar', 'x')[middle]
-	# the front: the mean velocity of each column falls through the level
-	columns = np.unique(np.round(body.positions[middle, 0] / pitch * 4), return_inverse=True)[1]
-	count = np.bincount(columns)
-	v, at = np.bincount(columns, v) / count, np.bincount(columns, at) / count
+	at, v = scenes.profile(s, 'bar', 'vx')  # means of the columns; the front: where v falls through the level
 	k = np.flatnonzero((v[:-1] >= level) & (v[1:] < level))[-1]
 	fronts.append((O.time, at[k] + (at[k + 1] - at[k]) * (v[k] - level) / (v[k] - v[k + 1])))
 D = np.polyfit(*np.array(fronts).T, 1)[0]

@@ -13,7 +13,7 @@ import tempfile
 import types
 import zlib
 
-from yade_mca import _elf
+from yade_mca import _elf, _omega
 
 REBUILD = 'delete the folder build and run pyscripts/setup, or reinstall the package yade-mca'
 
@@ -184,3 +184,4 @@ def publish(classes, package):
 		for module in (yade, yade.utils, builtins):
 			setattr(module, name, cls)
 	yade.system._allSerializables |= set(classes)
+	_omega.mend(yade.wrapper.Omega, yade.wrapper.McaSolverEngine)

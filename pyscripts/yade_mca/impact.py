@@ -7,7 +7,7 @@
     ...     run.advance()
     >>> run.last['lengthLoss'], run.last['velocityLossTail']
 
-A run ends when the head of the rod is at least half a diameter beyond the plate's original rear face (measure.rearClearance) and the momentum of
+A run ends when the head of the rod is at least half a diameter beyond the plate's original rear face (measure.rearClearance, normal to the face) and the momentum of
 all rod material has settled (measure.momentumSettled), or after `longest`; or at a time that was asked for. Time counts from the moment of contact.
 """
 import math
@@ -22,7 +22,7 @@ from ._yade import steps
 __all__ = ['Impact', 'ImpactError']
 
 #: what each sample holds, SI units; energies per 1 m of thickness [J/m]
-COLUMNS = ('time', 'step', 'dt', 'lengthLoss', 'lengthLossUnbroken', 'velocityLossTail', 'velocityLossAll', 'tailVelocity', 'allVelocity', 'tailMass', 'clearance', 'momentum',
+COLUMNS = ('time', 'step', 'dt', 'lengthLoss', 'lengthLossUnbroken', 'lengthLossGeometric', 'velocityLossTail', 'velocityLossAll', 'tailVelocity', 'allVelocity', 'tailMass', 'clearance', 'momentum',
            'kinetic', 'stored', 'plastic', 'viscous', 'friction', 'fracture', 'grid', 'total', 'booked', 'momentumX', 'momentumY', 'deepest', 'clamped',
            'brokenLinks', 'contacts', 'awake')
 
@@ -117,7 +117,8 @@ class Impact:
 		if not (np.isfinite(v).all() and np.isfinite(position).all()):
 			raise ImpactError('not a number in the state of the rod at step %d' % o.iter)
 		m = measure.rodMeasure(s.field('rod', 'mass'), v, e, s.facts['speed'], s.facts['direction'])
-		row = dict(m.asDict(), time=o.time, step=o.iter, dt=o.dt, clearance=measure.rearClearance(position, e, s.facts['rear'], s.facts['direction']))
+		row = dict(m.asDict(), time=o.time, step=o.iter, dt=o.dt, clearance=measure.rearClearance(position, e, s.facts['rear'], s.facts['normal']))
+		row['lengthLossGeometric'] = 1 - scenes.rodLength(s) / s.facts['restLength']
 		row['momentum'] = m.allVelocity * self.rodMass
 		a, c = s.automata.energies(), s.automata.counters()
 		row.update({k: a[k] for k in ('plastic', 'viscous', 'friction', 'fracture')})

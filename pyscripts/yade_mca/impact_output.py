@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Files of a penetration run: pictures of the pattern, the history plot, ParaView files. Needs no more of YADE than the scene's arrays."""
-import os
+"""Files of a penetration run: pictures of the pattern, the history plot, the animation, ParaView files. Needs no more of YADE than the scene's arrays."""
+import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -50,7 +51,7 @@ def bounds(s):
 	"""What all pictures of a run show (x0, y0, x1, y1) [m]: the plate, the rod at the start and as much below the plate."""
 	f = s.facts
 	half = 0.5 * f.get('plateWidth', f['automataWidth']) + 2 * f['spacing']
-	half = min(half, 0.6 * f['rodLength'])
+	half = max(min(half, 0.6 * f['rodLength']), abs(f['direction'][0]) * f['rodLength'] + 2 * f['rodDiameter'])  # an oblique rod leans over
 	return (-half, -f['thickness'] - 0.85 * f['rodLength'], half, 1.02 * f['rodLength'])
 
 
@@ -97,7 +98,7 @@ def historyPicture(path, run, title=''):
 	e0 = run.impactEnergy
 	panels = [
 	        ('velocity', 'm/s', {'tail': r['tailVelocity'], 'all rod material': r['allVelocity']}),
-	        ('loss', '', {'dl/l0': r['lengthLoss'], 'dU/U0 of the tail': r['velocityLossTail'], 'dU/U0 of all': r['velocityLossAll']}),
+	        ('loss', '', {'dl/l0 by mass': r['lengthLoss'], 'dl/l0 as length': r['lengthLossGeometric'], 'dU/U0 of the tail': r['velocityLossTail'], 'dU/U0 of all': r['velocityLossAll']}),
 	        ('energy', 'J/m', dict({'sum': r['total'], 'kinetic': r['kinetic'], 'plastic work': r['plastic'], 'stored': r['stored'], 'viscous': r['viscous'], 'friction': r['friction']},
 	                               **({'grid, internal': r['grid']} if run.scene.grid else {}))),
 	        ('sum / impact energy - 1', '%', {'independent sum': 100 * (r['total'] - r['total'][0]) / e0}),
@@ -107,18 +108,24 @@ def historyPicture(path, run, title=''):
 
 
 class Output:
-	"""Pictures at given times and at the end, ParaView files at regular ones."""
+	"""Pictures at given times and at the end, frames of the animation and ParaView files at regular ones.
 
-	def __init__(self, folder, pictures=(0., 20e-6, 40e-6), every=5e-6, resumeAt=None):
-		"""folder exists. pictures: times [s]; every: interval of the ParaView files [s]; resumeAt: time of the checkpoint of a run that goes on [s]."""
-		self.folder, self.pictures, self.every = Path(folder), list(pictures), every
+	A file that cannot be written does not end the run: it is named on the standard error and in `failures` ({path: why}).
+	"""
+
+	def __init__(self, folder, pictures=(0., 20e-6, 40e-6), every=5e-6, resumeAt=None, animation=True):
+		"""folder exists. pictures: times [s]; every: interval of the ParaView files [s]; resumeAt: time of the checkpoint of a run that goes on [s]; animation: False for none."""
+		self.folder, self.pictures, self.every, self.resumeAt = Path(folder), list(pictures), every, resumeAt
 		self.paraview = self.folder / 'paraview'
 		self.paraview.mkdir(exist_ok=True)
 		self.collection = vtk_output.Collection(self.folder / 'penetration.pvd', keep=resumeAt is not None)
-		self.files = []
+		self.failures = {}
+		self.animation, self.frames = animation, None
+		self.seconds = {'animation': 0.}  #: processor time by kind of file, what the computation pays
 		self.next = 0
 		if resumeAt is not None:
-			for f in [*self.folder.glob('.*.png.*'), *self.folder.glob('.*.pvd.*'), *self.folder.glob('.*.json.*'), *self.paraview.glob('.*.part')]:
+			for f in [*self.folder.glob('.*.png.*'), *self.folder.glob('.*.gif.*'), *self.folder.glob('.*.html.*'), *self.folder.glob('.*.pvd.*'), *self.folder.glob('.*.json.*'),
+			          *self.paraview.glob('.*.part')]:
 				f.unlink()  # what a killed process has left unfinished
 			self.collection.truncate(resumeAt * (1 + 1e-12) + 1e-18)
 			self.pictures = [t for t in self.pictures if t > resumeAt or not (self.folder / self.name(t)).exists()]
@@ -128,15 +135,51 @@ class Output:
 	def name(t):
 		return 'pattern_%02.0fus.png' % (1e6 * t)
 
+	def attempt(self, path, write, *args):
+		"""write(*args); True when it worked. A path that could not be written stays in `failures` until it can."""
+		try:
+			write(*args)
+		except OSError as e:
+			name, why = str(e.filename or path), e.strerror or str(e)
+			if name not in self.failures:
+				print("\npenetration: cannot write '%s': %s; the run goes on" % (name, why), file=sys.stderr)
+			self.failures[name] = why
+			return False
+		self.failures.pop(str(path), None)
+		return True
+
 	def update(self, run, end=False):
 		"""To be called at the start and after each sample; writes what is due."""
 		if (run.time >= self.next * self.every or end) and not (self.collection.entries and self.collection.entries[-1][0] >= run.time):
-			self.collection.add(run.time, writeParaview(run.scene, self.paraview, '%06d' % round(1e9 * run.time), run.time))
+			self.attempt(self.collection.path, lambda: self.collection.add(run.time, writeParaview(run.scene, self.paraview, '%06d' % round(1e9 * run.time), run.time)))
 			self.next = int(run.time / self.every) + 1
 		due = [t for t in self.pictures if run.time >= t]
 		if due:
-			self.files.append(patternPicture(self.folder / self.name(due[-1]), run.scene, run.time))
+			self._pattern(self.name(due[-1]), run)
 			self.pictures = [t for t in self.pictures if t > run.time]
+		if self.animation:
+			start = time.process_time()
+			self.attempt(self.folder / 'frames', self._frame, run)
+			self.seconds['animation'] += time.process_time() - start
 		if end:
-			self.files.append(patternPicture(self.folder / 'pattern_end.png', run.scene, run.time))
-			self.files.append(historyPicture(self.folder / 'history.png', run))
+			self._pattern('pattern_end.png', run)
+			self.attempt(self.folder / 'history.png', historyPicture, self.folder / 'history.png', run)
+			if self.frames and self.frames.files:
+				start = time.process_time()
+				self.attempt(self.folder / 'penetration.gif', self._gif)
+				self.seconds['animation'] += time.process_time() - start
+
+	def _pattern(self, name, run):
+		self.attempt(self.folder / name, patternPicture, self.folder / name, run.scene, run.time)
+
+	def _frame(self, run):
+		if self.frames is None:
+			from .frames import Frames
+			f = run.scene.facts
+			self.frames = Frames(self.folder / 'frames', bounds(run.scene), f['rodLength'] / f['speed'] / 52, self.resumeAt)  # some 55 in all: most runs end soon after the rod has flown its length
+		self.frames.update(run)
+
+	def _gif(self):
+		from .frames import writeGif
+		images = self.frames.images()
+		if images: writeGif(self.folder / 'penetration.gif', images)

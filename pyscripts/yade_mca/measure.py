@@ -8,20 +8,22 @@ plastic strain, m the mass:
     all         all rod material;           V_all  = sum m v / sum m
     intact      material with eps_p < 0.3 and |v - V_tail| <= 0.15 |V_tail|
     unbroken    material with eps_p < 1
+    front       1 % of the unbroken material within the rod's radius of its axis is ahead of it; L = distance from the rear of the tail to it
     velocityLossTail = 1 - V_tail/U0        velocityLossAll = 1 - V_all/U0
     lengthLoss = 1 - m_intact/m_rod         lengthLossUnbroken = 1 - m_unbroken/m_rod
+    lengthLossGeometric = 1 - L/L0
 
-U0 is the impact speed. dl/l0 of the study is lengthLoss (the rod erodes from its head, so mass counts length), dU/U0 is velocityLossTail;
-velocityLossAll counts what the rod as a whole has given to the plate. lengthLossUnbroken counts the mushroomed head, too, as rod: a
-source that does not say what it calls intact means something between the two. The same definitions hold for the two independent codes of
-tests/data/penetration_peers.csv.
+U0 is the impact speed, L0 the L of the undeformed rod. dU/U0 of the study is velocityLossTail; velocityLossAll counts what the rod as a whole has
+given to the plate. dl/l0 by mass is lengthLoss (the rod erodes from its head, so mass counts length); lengthLossUnbroken counts the mushroomed
+head, too, as rod. dl/l0 as a length is lengthLossGeometric, read when the head leaves the plate: what a radiograph shows. A source that does not
+say what it calls length means one of these. The definitions by mass hold for the two independent codes of tests/data/penetration_peers.csv, too.
 """
 import math
 from dataclasses import asdict, dataclass
 
 import numpy as np
 
-__all__ = ['RodMeasure', 'momentumSettled', 'rearClearance', 'rodMeasure', 'speedAlong']
+__all__ = ['RodMeasure', 'geometricLength', 'momentumSettled', 'rearClearance', 'rodMeasure', 'speedAlong']
 
 TAIL_STRAIN = 0.1  #: material with less plastic strain is the undeformed tail [-]
 INTACT_STRAIN = 0.3  #: material with less plastic strain may count as intact rod [-]
@@ -80,13 +82,31 @@ def rodMeasure(mass, velocity, plasticStrain, impactSpeed, direction=(0., -1.)):
 	return RodMeasure(1 - share, 1 - vTail / impactSpeed, 1 - everything / impactSpeed, vTail, everything, float(m[tail].sum() / total), share, broken)
 
 
-def rearClearance(positions, plasticStrain, rear, direction=(0., -1.), quantile=0.95):
-	"""How far the head of the rod is beyond the plate's original rear face [m], negative before it.
+def geometricLength(positions, plasticStrain, radius, direction=(0., -1.), quantile=0.01):
+	"""Length of the rod from the rear of its tail to the front of its unbroken material near the axis [m]; 0 when no material is undeformed.
 
-	positions (N, 2) [m] and plasticStrain (N,) of rod material, rear: a point on the face. The head is the front `quantile` of the material with
-	eps_p below 1 (what is more strained is debris). The study reads its numbers when this is at least half the rod's diameter.
+	positions (N, 2) [m] and plasticStrain (N,) of all rod material; radius of the rod [m]; direction of the impact, to which the axis is parallel,
+	through the middle of the tail. `quantile` of the unbroken material within `radius` of the axis is ahead of the front: single grains do not count.
 	"""
-	s = speedAlong(np.asarray(positions, float) - np.asarray(rear, float), direction)
+	n, e = np.asarray(direction, float), np.asarray(plasticStrain, float)
+	along, across = speedAlong(positions, n), speedAlong(positions, (-n[1], n[0]))
+	tail = e < TAIL_STRAIN
+	if not tail.any():
+		return 0.
+	near = abs(across - across[tail].mean()) <= radius * (1 + 1e-9)
+	if not (near & tail).any():
+		return 0.
+	return float((np.quantile(along[near & (e < BROKEN_STRAIN)], 1 - quantile) - along[near & tail].min()) / (1 - quantile))
+
+
+def rearClearance(positions, plasticStrain, rear, normal=(0., -1.), quantile=0.95):
+	"""How far the head of the rod is beyond the plate's original rear face, normal to the face [m], negative before it.
+
+	positions (N, 2) [m] and plasticStrain (N,) of rod material, rear: a point on the face; normal: of the face, out of the plate. The head is the front
+	`quantile` of the material with eps_p below 1 (what is more strained is debris). The study reads its numbers when this is at least half the rod's
+	diameter.
+	"""
+	s = speedAlong(np.asarray(positions, float) - np.asarray(rear, float), normal)
 	s = s[np.asarray(plasticStrain, float) < BROKEN_STRAIN]
 	return float(np.quantile(s, quantile)) if len(s) else -math.inf
 

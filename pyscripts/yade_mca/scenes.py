@@ -9,67 +9,22 @@ Every builder resets nothing: call O.reset() first for a fresh scene. The script
 O.engines, s.automata (McaEngine), s.grid (McaGridEngine or None), s.couplers. Plane strain in x-y, SI units, per 1 m of thickness.
 """
 import math
-from dataclasses import dataclass, field
 
 import numpy as np
 
-from . import packings
+from . import measure, packings
 from ._yade import scene as omega
 from ._yade import yadeClass
-from .packings import Rectangle, addBodies, hexagonal
+from .packings import Rectangle, hexagonal
+from .scene import PITCH, PLATE, ROD, Scene, SceneError, affordable, oneOf, positive, start, subsonic, within
+from .tied_plate import gradedLines, leaning, plateGeometry, tiedPlate
+from .uniaxial import addStrip, driveEnd, middle, plateImpact, profile, strip
 
-__all__ = ['Scene', 'SceneError', 'bar', 'gradedLines', 'law2Engines', 'penetration', 'plateImpact', 'rodMeasure', 'taylorBar', 'tiedPlate', 'touchDown']
+__all__ = ['Scene', 'SceneError', 'addStrip', 'bar', 'checkImpact', 'driveEnd', 'gradedLines', 'law2Engines', 'middle', 'penetration', 'plateImpact', 'profile',
+           'rodLength', 'rodMeasure', 'start', 'strip', 'taylorBar', 'tiedPlate', 'touchDown']
 
-PITCH = 0.5 * math.sqrt(3)  #: distance of close-packed rows over the spacing
 SPALL = (3.8e9, 3.0e9)  #: tensile strength of rod and plate [Pa], see penetration()
-ROD, PLATE = 1, 2  #: Body.mask of the two bodies of an impact: bodies of different mask do not link
-
-
-class SceneError(ValueError):
-	"""A scene that cannot be built; the message names the value and what is allowed."""
-
-
-@dataclass
-class Scene:
-	"""What a builder made. `ids`: name of a part -> body ids (numpy int), `packings`: the same names -> Packing."""
-	automata: object = None  #: McaEngine
-	grid: object = None  #: McaGridEngine or None
-	couplers: list = field(default_factory=list)
-	ids: dict = field(default_factory=dict)
-	packings: dict = field(default_factory=dict)
-	blocks: dict = field(default_factory=dict)  #: name -> number of the grid block
-	facts: dict = field(default_factory=dict)  #: sizes, speed, materials as used
-
-	def field(self, part, name):
-		"""Quantity `name` of McaEngine.field() for the automata of `part`, in the order of ids[part]."""
-		return self.automata.field(name)[np.searchsorted(self.automata.ids, self.ids[part])]
-
-	def vectors(self, part, x, y):
-		"""Two quantities as columns, e.g. vectors('rod', 'vx', 'vy')."""
-		return np.stack((self.field(part, x), self.field(part, y)), axis=1)
-
-	def add(self, part, packing, material, **options):
-		"""Adds bodies under the name `part`; see packings.addBodies."""
-		self.ids[part], self.packings[part] = np.array(addBodies(packing, material, **options)), packing
-		return self.ids[part]
-
-
-def _positive(**values):
-	for name, v in values.items():
-		if not (isinstance(v, (int, float, np.floating, np.integer)) and 0 < v < math.inf):
-			raise SceneError('%s must be above 0 and finite; got %r' % (name, v))
-
-
-def _oneOf(name, value, allowed):
-	if value not in allowed:
-		raise SceneError("%s '%s' is not one of %s" % (name, value, ', '.join(allowed)))
-
-
-def _start(engineOptions):
-	s = Scene()
-	s.automata = yadeClass('McaEngine')(**(engineOptions or {}))
-	omega().engines = [s.automata]
-	return s
+STEEPEST = math.radians(75)  #: largest obliquity of the rod [rad]
 
 
 def law2Engines(volumeRule='affine', stepFactor=None, **newton):
@@ -92,164 +47,118 @@ def bar(material, length, height, spacing, velocity=(0., 0.), angle=0., engineOp
 
 	material: McaMat, name or record; length, height, spacing [m]; velocity [m/s]; angle of the close-packed rows [rad].
 	"""
-	_positive(length=length, height=height, spacing=spacing)
-	s = _start(engineOptions)
-	s.add('bar', hexagonal(spacing, Rectangle((0, 0), (length, height)), angle=angle), material, velocity=velocity)
+	positive(length=length, height=height, spacing=spacing)
+	within('angle', angle, -2 * math.pi, 2 * math.pi, 'rad')
+	affordable(spacing, (length, height))
+	subsonic('velocity', float(np.abs(np.asarray(velocity, float)).max()), material)
+	body = hexagonal(spacing, Rectangle((0, 0), (length, height)), angle=angle)
+	s = start(engineOptions)
+	s.add('bar', body, material, velocity=velocity)
 	return s
 
 
-def touchDown(upper, lower):
-	"""Packing `upper` moved along y until its lowest automata just touch those of `lower` (no overlap)."""
+def _front(u, w, reach):
+	"""Indices of the points that can be the first to touch something at lower w: those less than two `reach` above the lowest in their neighbourhood."""
+	column = np.floor((u - u.min()) / reach).astype(int)
+	lowest = np.full(column.max() + 1, np.inf)
+	np.minimum.at(lowest, column, w)
+	return np.flatnonzero(w < lowest[column] + 2 * reach)
+
+
+def touchDown(upper, lower, direction=(0., -1.)):
+	"""Packing `upper` moved along `direction` (or back) until its foremost automata just touch those of `lower` (no overlap). Raises SceneError."""
+	n = np.asarray(direction, float) / np.hypot(*direction)
 	reach = upper.radius + lower.radius
-	low, high = upper.positions[:, 1].min(), lower.positions[:, 1].max()
-	a = upper.positions[upper.positions[:, 1] < low + 2 * reach]
-	b = lower.positions[lower.positions[:, 1] > high - 2 * reach]
-	dx = a[:, None, 0] - b[None, :, 0]
-	over = abs(dx) < reach
+	frame = lambda p: (p @ (-n[1], n[0]), p @ -n)  # across the flight, and back along it
+	(au, aw), (bu, bw) = frame(upper.positions), frame(lower.positions)
+	under = np.flatnonzero((bu > au.min() - reach) & (bu < au.max() + reach))
+	if not len(under):
+		raise SceneError('the bodies do not meet: no automaton of one lies above the other')
+	a, b = _front(au, aw, reach), under[_front(bu[under], -bw[under], reach)]
+	du = au[a][:, None] - bu[b][None, :]
+	over = abs(du) < reach
 	if not over.any():
 		raise SceneError('the bodies do not meet: no automaton of one lies above the other')
-	need = b[None, :, 1] + np.sqrt(np.maximum(reach**2 - dx**2, 0)) - a[:, None, 1]
-	return upper.translated((0., need[over].max() + 1e-9 * reach))
+	need = bw[b][None, :] + np.sqrt(np.maximum(reach**2 - du**2, 0)) - aw[a][:, None]
+	return upper.translated(-n * (need[over].max() + 1e-9 * reach))
 
 
-def plateImpact(flyer, target, flyerThickness, targetThickness, height, spacing, speed, lateral='fixed', engineOptions=None):
-	"""Flyer on target in uniaxial strain along x. Parts 'flyer', 'target'.
+def taylorBar(material, length, diameter, spacing, speed, friction=0., anvil='smooth', engineOptions=None):
+	"""Taylor test in plane strain: a bar along y meets a rigid anvil at y = 0 with its lower end. Part 'bar', and 'anvil' where it is rough.
 
-	flyer, target: materials; thicknesses along x and height [m]; speed of the flyer towards +x [m/s].
-	lateral: 'fixed' blocks all motion along y (uniaxial strain; read values away from the upper and lower edge, whose automata lack
-	neighbours), 'free' leaves the edges free. Rows run along x; the free face of the target is at x = targetThickness.
+	length, diameter, spacing [m]; speed [m/s] towards -y.
+	anvil    'smooth': the lowest row, of half weight, slides along y = 0 and is at rest in y from the start, as at a plane of symmetry (it cannot lift off);
+	         'rough': a double row of fixed automata of the same material, its upper edge at y = 0: the bar's automata interlock with it, and the foot
+	         stays narrower and the bar longer than on a smooth one, by a few per cent and up to a quarter
+	friction angle [rad] between bar and rough anvil, of the material `material` from now on
 	"""
-	_positive(flyerThickness=flyerThickness, targetThickness=targetThickness, height=height, spacing=spacing, speed=speed)
-	_oneOf('lateral', lateral, ('fixed', 'free'))
-	s = _start(engineOptions)
-	# one lattice through both, so that the faces fit; the flyer ends half a spacing before the target begins
-	whole = hexagonal(spacing, Rectangle((0.5 * (targetThickness - flyerThickness), 0), (targetThickness + flyerThickness, height)), rim='full')
-	front = whole.positions[:, 0] < 0
-	for name, material, part, v, mask in (('flyer', flyer, front, speed, ROD), ('target', target, ~front, 0., PLATE)):
-		ids = s.add(name, whole.select(part), material, velocity=(v, 0.), mask=mask)
-		if lateral == 'fixed':
-			for i in ids.tolist():
-				omega().bodies[i].state.blockedDOFs = 'yzXYZ'
-	s.facts.update(speed=speed, middle=0.25 * height)
-	return s
-
-
-def taylorBar(material, length, diameter, spacing, speed, friction=0., engineOptions=None):
-	"""Taylor test in plane strain: a bar along y falls on a rigid anvil below it. Parts 'bar', 'anvil'.
-
-	length, diameter, spacing [m]; speed [m/s] towards -y; the anvil is a double row of fixed automata of the same material, its upper edge at
-	y = 0; friction: angle [rad] of bar and anvil.
-	"""
-	_positive(length=length, diameter=diameter, spacing=spacing, speed=speed)
-	s = _start(engineOptions)
+	positive(length=length, diameter=diameter, spacing=spacing, speed=speed)
+	oneOf('anvil', anvil, ('smooth', 'rough'))
+	within('friction', friction, 0., 1.5, 'rad')
+	if spacing > 0.5 * min(length, diameter):
+		raise SceneError('spacing %g m is above half the length or diameter of the bar (%g, %g m)' % (spacing, length, diameter))
+	if friction and anvil == 'smooth':
+		raise SceneError("friction %g rad on a smooth anvil: take anvil='rough'" % friction)
+	affordable(spacing, (length, diameter))
+	subsonic('speed', speed, material)
+	outline, rough = Rectangle((0, 0.5 * length), (diameter, length)), anvil == 'rough'
+	body = hexagonal(spacing, outline, **(dict(angle=0.5 * math.pi, origin=(0, 0.5 * spacing)) if rough else dict(origin=(0., 0.))))
+	s = start(engineOptions)
 	m = packings._material(material)
-	m.frictionAngle = friction
-	anvil = hexagonal(spacing, Rectangle((0, -PITCH * spacing), (6 * diameter, 2 * PITCH * spacing)), rim='full')
-	body = hexagonal(spacing, Rectangle((0, 0.5 * length), (diameter, length)), angle=0.5 * math.pi, origin=(0, 0.5 * spacing))
-	s.add('bar', touchDown(body, anvil), m, velocity=(0., -speed), mask=ROD)
-	s.add('anvil', anvil, m, fixed=True, mask=PLATE)
-	s.facts.update(speed=speed, length=length, diameter=diameter)
+	s.facts.update(speed=speed, length=length, diameter=diameter, anvil=anvil)
+	if rough:
+		m.frictionAngle = friction
+		plate = hexagonal(spacing, Rectangle((0, -PITCH * spacing), (6 * diameter, 2 * PITCH * spacing)), rim='full')
+		s.add('bar', touchDown(body, plate), m, velocity=(0., -speed), mask=ROD)
+		s.add('anvil', plate, m, fixed=True, mask=PLATE)
+	else:
+		foot = body.positions[:, 1] < 0.1 * spacing
+		ids = s.add('bar', body, m, velocity=np.stack((np.zeros(len(body)), np.where(foot, 0., -speed)), axis=1), mask=ROD)
+		s.block(ids[foot], 'yZ')  # the mirror image turns the other way
 	return s
 
 
-def gradedLines(start, end, first, growth=1.1, largest=None):
-	"""Grid lines from `start` to `end` (either sense): the first cell `first` long, each next at most `growth` times longer, none above `largest`.
+def _rodPacking(s, spacing, length, diameter, angle, obliquity, direction, thickness):
+	"""The rod, its axis through the middle of the plate's thickness at x = 0, its head on the plate.
 
-	Returns an array from start to end [m]. The growth is lowered a little so that the last line falls on `end`; where that cannot be (a
-	distance of few cells), the distance is divided evenly.
+	Where its close-packed columns have the direction of the plate's, it goes on with the plate's lattice, so that all of its head arrives at once and each
+	automaton between two of the plate's; a head of which only some stand on top of others is stopped by few contacts, which give way at 4 km/s.
 	"""
-	_positive(first=first, growth=growth)
-	distance, largest = abs(end - start), largest or math.inf
-	if growth < 1 or largest < first:
-		raise SceneError('growth must be at least 1 and largest at least first; got %r, %r, %r' % (growth, largest, first))
-	cells = lambda n, q: np.minimum(first * q**np.arange(n), largest)
-	n = 1
-	while cells(n, growth).sum() < distance * (1 - 1e-9):
-		n += 1
-	if cells(n, 1 / growth).sum() > distance:
-		lengths = np.full(max(round(distance / first), 1), 1.)
+	plate = s.packings['plate']
+	back = -np.asarray(direction)
+	if obliquity == 0 and leaning(angle) == 0:
+		top = plate.positions[plate.onLine((0, 0), (0, 1)), 1].max()  # 0, or half a spacing below the face
+		origin = (0., 0.5 * spacing if top > -0.25 * spacing else 0.)
+		p = hexagonal(spacing, Rectangle((0, 0.5 * length), (diameter, length)), angle=plate.angle, origin=origin)
+	elif obliquity == 0:
+		p = hexagonal(spacing, Rectangle((0, 0.5 * length + 1e-6 * spacing), (diameter, length)), angle=plate.angle, origin=plate.positions[0])
 	else:
-		low, high = 1 / growth, growth
-		for _ in range(100):
-			mid = 0.5 * (low + high)
-			low, high = (mid, high) if cells(n, mid).sum() < distance else (low, mid)
-		lengths = cells(n, high)
-	lengths *= distance / lengths.sum()
-	lines = start + math.copysign(1, end - start) * np.concatenate(((0.,), np.cumsum(lengths)))
-	lines[-1] = end
-	return lines
+		middle = np.array((0., -0.5 * thickness)) + back * (0.5 * length + thickness)
+		first = middle - back * 0.5 * (length - spacing)
+		p = hexagonal(spacing, Rectangle(middle, (diameter, length), angle=obliquity), angle=0.5 * math.pi + angle + obliquity, origin=first)
+	return touchDown(p, plate, direction)
 
 
-def _tie(s, block, side, ids):
-	"""Ties the automata `ids` to a side of a grid block by a McaGridCoupler."""
-	coupler = yadeClass('McaGridCoupler')(block=block, side=side, ids=[int(i) for i in ids])
-	s.couplers.append(coupler)
-	return coupler
-
-
-def _plateEnds(s, material, spacing, thickness, half, plateHalf, ends, growth, largest, dtFactor):
-	"""Grid blocks left and right of the automata (|x| from `half` to `plateHalf`), tied to the rows at |x| = half."""
-	s.grid = yadeClass('McaGridEngine')()
-	ys = np.linspace(-thickness, 0., round(thickness / spacing) + 1)
-	lines = gradedLines(half, plateHalf, spacing, growth, largest)
-	sides = (('right', lines, 'left', 'right'), ('left', -lines[::-1], 'right', 'left'))
-	for name, xs, inner, outer in sides:  # all blocks come before the first boundary
-		s.blocks[name] = s.grid.addRectangle(material, xs.tolist(), ys.tolist(), name=name)
-	for name, xs, inner, outer in sides:
-		b = s.blocks[name]
-		if ends == 'fixed':
-			s.grid.fix(b, outer)
-		elif ends == 'viscous':
-			s.grid.viscous(b, outer)
-	for name, inner, sign in (('right', 'left', 1), ('left', 'right', -1)):
-		row = s.packings['plate'].onLine((sign * half, 0), (0, 1))
-		_tie(s, s.blocks[name], inner, s.ids['plate'][row])
-	omega().engines = [yadeClass('McaTimeStepper')(factor=dtFactor), s.automata, s.grid, *s.couplers]
-
-
-def tiedPlate(material, thickness, spacing, automataWidth=80e-3, plateWidth=120e-3, mode='coupled', ends='fixed', growth=1.1, largest=4., mask=PLATE,
-              scene=None, dtFactor=0.4, engineOptions=None):
-	"""A plate (top face y = 0, rear face y = -thickness) whose middle is automata and whose rest is grid. Part 'plate', blocks 'left', 'right'.
-
-	mode      'coupled': grid outside the automata, tied at the columns nearest |x| = automataWidth/2; 'mca': automata only, no grid
-	ends      'fixed', 'viscous' (transmitting) or 'free': where the plate ends, |x| = plateWidth/2 ('coupled') or automataWidth/2 ('mca')
-	growth    of the cells away from the interface; largest: longest cell in spacings
-	dtFactor  share of the largest stable time step
-	thickness must be a whole number of spacings. Close-packed columns run along y, so that the tied column has the nodes of the grid.
-	"""
-	_positive(thickness=thickness, spacing=spacing, automataWidth=automataWidth, plateWidth=plateWidth)
-	_oneOf('mode', mode, ('coupled', 'mca'))
-	_oneOf('ends', ends, ('fixed', 'viscous', 'free'))
-	if abs(thickness / spacing - round(thickness / spacing)) > 1e-6:
-		raise SceneError('thickness %g m is not a whole number of spacings %g m: take spacing %g m' % (thickness, spacing, thickness / math.ceil(thickness / spacing)))
-	columns = round(0.5 * automataWidth / (PITCH * spacing))
-	half = columns * PITCH * spacing
-	if mode == 'coupled' and 0.5 * plateWidth < half + spacing:
-		raise SceneError('plateWidth %g m leaves no room for a grid beside %g m of automata' % (plateWidth, 2 * half))
-	s = scene or _start(engineOptions)
-	s.automata.dtFactor = dtFactor
-	plate = hexagonal(spacing, Rectangle((0, -0.5 * thickness), (2 * half, thickness)), angle=0.5 * math.pi, origin=(half, 0.))
-	m = packings._material(material)
-	s.add('plate', plate, m, mask=mask)
-	s.facts.update(thickness=thickness, spacing=spacing, automataWidth=2 * half, mode=mode, ends=ends, plate=m.label)
-	if mode == 'coupled':
-		s.facts['plateWidth'] = plateWidth
-		_plateEnds(s, m, spacing, thickness, half, 0.5 * plateWidth, ends, growth, largest * spacing, dtFactor)
-	else:
-		for sign in (-1, 1):
-			ids = s.ids['plate'][plate.onLine((sign * half, 0), (0, 1))].tolist()
-			if ends == 'fixed':
-				for i in ids:
-					omega().bodies[i].state.blockedDOFs = 'xyzXYZ'
-			elif ends == 'viscous':
-				s.automata.setViscous(ids, (float(sign), 0.))
-	return s
+def checkImpact(thickness, spacing, speed, mode, rodLength, rodDiameter, rod, plate, automataWidth, plateWidth, angle=0., obliquity=0.):
+	"""Raises SceneError when penetration() cannot build a scene of these sizes; makes nothing."""
+	positive(thickness=thickness, spacing=spacing, speed=speed, rodLength=rodLength, rodDiameter=rodDiameter, automataWidth=automataWidth)
+	if spacing > 0.5 * min(rodDiameter, thickness):
+		raise SceneError('spacing %g m is above half the rod diameter or plate thickness (%g, %g m)' % (spacing, rodDiameter, thickness))
+	if rodLength < 2 * spacing:
+		raise SceneError('rodLength %g m is below two spacings of %g m' % (rodLength, spacing))
+	within('obliquity', obliquity, -STEEPEST, STEEPEST, 'rad')
+	plateGeometry(thickness, spacing, automataWidth, plateWidth, mode, angle)
+	need = thickness * math.tan(abs(obliquity)) + rodDiameter / math.cos(obliquity) + 2 * spacing
+	if automataWidth < need:
+		raise SceneError('automataWidth %g m is too narrow: at an obliquity of %.3g degrees the rod crosses the plate within %.3g m' % (automataWidth, math.degrees(obliquity), need))
+	affordable(spacing, (thickness, automataWidth), (rodLength, rodDiameter))
+	subsonic('speed', speed, rod, plate)
 
 
 def penetration(thickness=25e-3, spacing=1e-3, speed=1520., mode='coupled', ends=None, rodLength=100e-3, rodDiameter=10e-3, rod='WHA_JC', plate='4340',
                 automataWidth=80e-3, plateWidth=120e-3, fractureStrain=1.0, spallStrength=SPALL, strengthSpread=0.05, friction=None, eos='shockAdiabat',
-                yieldModel=None, viscosity=1., seed=1, dtFactor=0.5, account=True, engineOptions=None):
-	"""A rod along y falls on the upper face of a plate: the main job. Parts 'rod', 'plate'; impact direction (0, -1).
+                yieldModel=None, viscosity=1., seed=1, dtFactor=0.5, account=True, angle=0., obliquity=0., engineOptions=None):
+	"""A rod falls on the upper face of a plate: the main job. Parts 'rod', 'plate'; impact direction (sin obliquity, -cos obliquity).
 
 	thickness [m], spacing [m], speed [m/s]; mode and ends as in tiedPlate() (ends None: 'fixed' when coupled, 'viscous' with automata only)
 	rod, plate     names or records of the library, or McaMat (then taken as they are)
@@ -261,15 +170,24 @@ def penetration(thickness=25e-3, spacing=1e-3, speed=1520., mode='coupled', ends
 	eos, yieldModel of both materials; yieldModel None: the fullest the library holds (Johnson-Cook with rate and heating)
 	viscosity      factor on the artificial viscosity of both [-]
 	dtFactor       share of the largest stable time step; account: keep the energy account
-	Time 0 is the moment of contact: the rod's lowest automata just touch the plate.
+	angle          by which the packings are turned against the normal of the plate and the axis of the rod [rad]; see tiedPlate()
+	obliquity      between the flight of the rod, which is its axis, and the normal of the plate [rad], up to 75 degrees either way; the axis goes through
+	               the middle of the thickness at x = 0
+	Time 0 is the moment of contact: the rod's foremost automata just touch the plate. Raises SceneError (a ValueError) for values out of range.
 	"""
 	from .materials import Material, get, mcaMat
-	_positive(thickness=thickness, spacing=spacing, speed=speed, rodLength=rodLength, rodDiameter=rodDiameter, dtFactor=dtFactor)
-	if spacing > 0.5 * min(rodDiameter, thickness):
-		raise SceneError('spacing %g m is above half the rod diameter or plate thickness (%g, %g m)' % (spacing, rodDiameter, thickness))
-	_oneOf('mode', mode, ('coupled', 'mca'))
+	checkImpact(thickness, spacing, speed, mode, rodLength, rodDiameter, rod, plate, automataWidth, plateWidth, angle, obliquity)
+	within('strengthSpread', strengthSpread, 0., 1.)
+	within('viscosity', viscosity, 0., 100.)
+	within('seed', seed, 0, 2**31 - 1)
+	within('fractureStrain', fractureStrain, 0., math.inf, openLow=True)
+	if friction is not None:
+		within('friction', friction, 0., 10.)
+	if np.shape(spallStrength) != (2, ):
+		raise SceneError('spallStrength must be two numbers [Pa], of rod and plate; got %r' % (spallStrength, ))
+	for x in spallStrength:
+		within('spallStrength', x, 0., math.inf, 'Pa', openLow=True)
 	ends = ends or ('fixed' if mode == 'coupled' else 'viscous')
-	s = _start(dict(dict(seed=seed, account=account), **(engineOptions or {})))
 
 	def material(x, spall):
 		if not isinstance(x, (str, Material)):
@@ -280,14 +198,24 @@ def penetration(thickness=25e-3, spacing=1e-3, speed=1520., mode='coupled', ends
 		return mcaMat(m, **dict(constants, **({} if friction is None else dict(frictionAngle=math.atan(friction)))))
 
 	rodMat, plateMat = material(rod, spallStrength[0]), material(plate, spallStrength[1])
-	tiedPlate(plateMat, thickness, spacing, automataWidth, plateWidth, mode, ends, scene=s, dtFactor=(engineOptions or {}).get('dtFactor', dtFactor))
-	body = hexagonal(spacing, Rectangle((0, 0.5 * rodLength), (rodDiameter, rodLength)), angle=0.5 * math.pi, origin=(0., 0.5 * spacing))
-	s.add('rod', touchDown(body, s.packings['plate']), rodMat, velocity=(0., -speed), mask=ROD, color=(0.8, 0.5, 0.2))
-	s.facts.update(speed=speed, rodLength=rodLength, rodDiameter=rodDiameter, rod=rodMat.label, direction=(0., -1.), rear=(0., -thickness), seed=seed)
+	options = dict(dict(seed=seed, account=account), **(engineOptions or {}))
+	dtFactor = options.get('dtFactor', dtFactor)
+	s = tiedPlate(plateMat, thickness, spacing, automataWidth, plateWidth, mode, ends, dtFactor=dtFactor, angle=angle, engineOptions=options)
+	direction = (math.sin(obliquity), -math.cos(obliquity))
+	body = _rodPacking(s, spacing, rodLength, rodDiameter, angle, obliquity, direction, thickness)
+	s.add('rod', body, rodMat, velocity=(speed * direction[0], speed * direction[1]), mask=ROD, color=(0.8, 0.5, 0.2))
+	s.facts.update(speed=speed, rodLength=rodLength, rodDiameter=rodDiameter, rod=rodMat.label, direction=direction, rear=(0., -thickness), normal=(0., -1.),
+	               obliquity=obliquity, seed=seed)
+	s.facts['restLength'] = measure.geometricLength(body.positions, np.zeros(len(body)), 0.5 * rodDiameter, direction)
 	return s
 
 
 def rodMeasure(s):
 	"""measure.rodMeasure() of a penetration scene now; reads the solver's arrays, no write-back needed."""
-	from . import measure
 	return measure.rodMeasure(s.field('rod', 'mass'), s.vectors('rod', 'vx', 'vy'), s.field('rod', 'plasticStrain'), s.facts['speed'], s.facts['direction'])
+
+
+def rodLength(s):
+	"""measure.geometricLength() of a penetration scene now [m]; 1 - rodLength(s)/s.facts['restLength'] is the geometric dl/l0."""
+	f = s.facts
+	return measure.geometricLength(s.vectors('rod', 'x', 'y'), s.field('rod', 'plasticStrain'), 0.5 * f['rodDiameter'], f['direction'])

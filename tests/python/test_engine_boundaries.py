@@ -141,5 +141,5 @@ def test_viscousBoundaryNeedsAutomata(plugin):
 	scene.block(4, 4)
 	O.materials.append(utils.FrictMat())
 	other = O.bodies.append(utils.sphere((1, 1, 0), D, material=O.materials[-1]))
-	with pytest.raises(RuntimeError, match='body %d has no McaMat' % other):
+	with pytest.raises(RuntimeError, match='body %d is no automaton' % other):
 		scene.engine().setViscous([other], (1, 0))

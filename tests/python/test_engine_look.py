@@ -21,37 +21,47 @@ def test_bodiesAreWrittenAtTheEndOfARun(plugin):
 	assert s.pos[0] == scene.pick(e, ids[:1], 'x')[0] and s.vel[0] == scene.pick(e, ids[:1], 'vx')[0] and s.links > 0
 
 
-def test_periodOfWritingBack(plugin):
+def look(n, **attributes):
+	"""(step, bodies behind) as a PyRunner sees it that runs in every step, behind McaEngine and in front of it."""
 	from yade import O, PyRunner
 	import builtins
 	ids = scene.block(6, 6, velocity=(5., 1.))
-	e = scene.engine(1e-8, writePeriod=5)
-	seen = []
-	builtins.look = lambda: seen.append((O.iter, behind(e, ids)))
-	O.engines = O.engines + [PyRunner(command='look()', iterPeriod=1, firstIterRun=1)]
-	O.run(20, True)
-	fresh = [n for n, late in seen if not late]
-	assert fresh and all((n + 1) % 5 == 0 for n in fresh), seen
-	assert any(late for _, late in seen)
+	e = scene.engine(1e-8, **attributes)
+	seen = {True: [], False: []}
+	builtins.look = lambda after: seen[after].append((O.iter, behind(e, ids), e.lastWritten))
+	O.engines = [PyRunner(command='look(False)', iterPeriod=1), e, PyRunner(command='look(True)', iterPeriod=1)]
+	O.run(n, True)
+	return seen[False], seen[True]
 
 
-def test_syncWritesNow(plugin):
+def test_aRunnerSeesThePresentStateWhereverItStands(plugin):
+	before, after = look(6)
+	assert [late for _, late, _ in before + after] == [False] * len(before + after) and len(after) >= 5
+	assert all(written == step for step, _, written in after) and all(written == step - 1 for step, _, written in before)
+
+
+def test_nobodyLooksNothingIsWritten(plugin):
+	"""Runners that are not due cost no writing; writePeriod writes for those who look from outside."""
 	from yade import O, PyRunner
-	import builtins
-	ids = scene.block(6, 6, velocity=(5., 1.))
+	scene.block(6, 6, velocity=(5., 1.))
 	e = scene.engine(1e-8)
-	seen = []
-
-	def look():
-		late = behind(e, ids)
-		e.sync()
-		seen.append((late, behind(e, ids), e.lastWritten == O.iter))
-
-	builtins.look = look
-	O.engines = O.engines + [PyRunner(command='look()', iterPeriod=1)]
-	O.run(6, True)
-	assert seen[2:-1] == [(True, False, True)] * (len(seen) - 3), seen
-	assert not seen[-1][1]
+	O.engines = [e, PyRunner(command='written.append(engine.lastWritten)', iterPeriod=7)]
+	import builtins
+	builtins.written, builtins.engine = [], e
+	O.run(30, True)
+	assert e.lastWritten == 29 and all((b - a) % 7 == 0 for a, b in zip(builtins.written, builtins.written[1:]))
+	O.engines = [e]
+	O.run(20)
+	while O.running: pass
+	assert e.lastWritten == 49
+	e.writePeriod = 5
+	O.stopAtIter = 0
+	O.run()
+	start = O.iter
+	while O.iter < start + 20: pass
+	seen = e.lastWritten
+	O.pause()
+	assert (seen + 1) % 5 == 0 and e.lastWritten == O.iter - 1
 
 
 def test_singleStepsShowOnTheBodies(plugin):
@@ -141,7 +151,7 @@ def test_everyFieldHasOneNumberPerBody(plugin):
 	for name in ('x', 'y', 'vx', 'vy', 'omega', 'angle', 'mass', 'pressure', 'volumeRatio', 'equivalentStress', 'plasticStrain', 'temperature', 'stressZZ', 'fx', 'fy', 'links', 'brokenLinks', 'strength', 'diameter', 'weight', 'material'):
 		f = e.field(name)
 		assert f.shape == (len(ids), ) and np.isfinite(f).all(), name
-	with pytest.raises(RuntimeError, match="'speed' is unknown; known are"):
+	with pytest.raises(RuntimeError, match="name = 'speed' is unknown; it must be one of angle"):
 		e.field('speed')
 
 

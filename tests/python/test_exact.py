@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
@@ -18,8 +18,10 @@ from yade_mca.materials import get
 
 @settings(max_examples=50)
 @given(u=st.floats(0.1, 3000), b=st.floats(0, 2), c0=st.floats(1000, 8000), rho0=st.floats(1000, 2e4))
+@example(u=998., b=0., c0=1000., rho0=1000.)
 def test_hugoniot_obeys_the_jump_conditions_and_its_adiabat(u, b, c0, rho0):
 	h = Hugoniot(rho0, c0, b)
+	assume(u < 0.999 * h.shockSpeed(u))  # beyond, the material would be compressed to nothing
 	D, rho = h.shockSpeed(u), h.density(u)
 	assert rho0 * D == pytest.approx(rho * (D - u), rel=1e-12)
 	assert h.adiabat(h.strain(u)) == pytest.approx(h.pressure(u), rel=1e-10)
@@ -28,6 +30,15 @@ def test_hugoniot_obeys_the_jump_conditions_and_its_adiabat(u, b, c0, rho0):
 	assert h.tangent(e) == pytest.approx(slope, rel=1e-5)
 	n, w = np.polynomial.legendre.leggauss(40)
 	assert h.energy(e) == pytest.approx(-0.5 * e * w @ h.adiabat(0.5 * e * (n + 1)), rel=1e-8)
+
+
+@pytest.mark.parametrize('u', [1000., 2000., np.array([10., 1000.]), float('nan')])
+def test_no_shock_compresses_to_nothing(u):
+	h = Hugoniot(7830, 1000., 0.)
+	for what in (h.strain, h.density):
+		with pytest.raises(ValueError, match='below the shock speed'):
+			what(u)
+	assert h.density(999.) == pytest.approx(1000 * 7830)
 
 
 def test_tension_is_linear():

@@ -125,7 +125,7 @@ def test_tablesNodesAndForces(plugin):
         (lambda e, m: e.setVelocity(0, (float('inf'), 0)), 'not finite'),
         (lambda e, m: (e.fix(0, 'left'), e.prescribe(0, 'left', x=1.)), 'overlapping'),
         (lambda e, m: e.addGauge((9, 9)), 'outside'),
-        (lambda e, m: e.gauge(4), 'no gauge 4'),
+        (lambda e, m: e.gauge(4), 'there are 0 gauges'),
 ])
 def test_refusals(plugin, call, words):
 	from yade.wrapper import McaGridEngine

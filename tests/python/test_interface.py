@@ -76,13 +76,19 @@ def test_gridEngineMissing(halves):
 	assert 'no McaGridEngine' in message(lambda: s.O.run(1, True))
 
 
-def test_withoutItsCouplerEachEngineRunsAlone(halves):
+@pytest.mark.parametrize('how', ['dead', 'left out'])
+def test_aTiedRowNeedsItsCoupler(halves, how):
+	"""Without it the row would keep the velocity it has; the scene goes on when the coupler is back."""
 	s = halves(velocity=lambda x, y: (5 + 0 * x, 0 * x))
 	s.O.run(5, True)
 	assert s.automata.coupled and s.grid.coupled
-	s.O.engines = [e for e in s.O.engines if e != s.coupler]
+	whole = s.O.engines
+	if how == 'dead': s.coupler.dead = True
+	else: s.O.engines = [e for e in s.O.engines if e != s.coupler]
+	assert 'Put the coupler back' in message(lambda: s.O.run(5, True)) and s.grid.steps == 5
+	s.coupler.dead, s.O.engines = False, whole
 	s.O.run(5, True)
-	assert not s.automata.coupled and not s.grid.coupled and s.grid.steps == 10
+	assert s.grid.steps == 10
 
 
 def test_tiedBodyCannotBeErased(halves):

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from yade_mca.measure import momentumSettled, rearClearance, rodMeasure
+from yade_mca.measure import geometricLength, momentumSettled, rearClearance, rodMeasure
 
 
 def rod(n=1000, speed=1520.):
@@ -62,6 +62,40 @@ def test_exit():
 	assert rearClearance(p - (0, 0.08), e, (0, -0.025)) == pytest.approx(0.05, abs=1e-4)
 	e[y < 0.05] = 2.  # the front half is debris
 	assert rearClearance(p - (0, 0.08), e, (0, -0.025)) == pytest.approx(0.0025, abs=3e-4)
+
+
+@given(obliquity=st.floats(-1.2, 1.2), beyond=st.floats(-0.01, 0.05))
+def test_exit_is_measured_normal_to_the_face(obliquity, beyond):
+	"""A thin oblique rod: 95 % of it is behind the point whose distance from the face is asked for, wherever on the face it comes through."""
+	n = np.array((np.sin(obliquity), -np.cos(obliquity)))
+	s = np.linspace(-0.1, 0, 1001)[:, None]
+	p = np.array((0.013, -0.025 - beyond)) + s * n  # the foremost point is `beyond` the face
+	assert rearClearance(p, np.zeros(1001), (0, -0.025)) == pytest.approx(beyond - 0.005 * np.cos(obliquity), abs=1e-9)
+
+
+def grains(length=0.1, radius=5e-3, d=0.5e-3):
+	y, x = np.meshgrid(np.arange(0, length + d / 2, d), np.arange(-radius, radius + d / 2, d), indexing='ij')
+	return np.stack((x.ravel(), y.ravel()), axis=1)  # head at y = 0
+
+
+@given(turn=st.floats(0, 6.3), shift=st.floats(-1, 1))
+def test_geometric_length(turn, shift):
+	"""Known rods, anywhere and in any direction: whole, eroded, with a mushroom and debris around and grains ahead of it."""
+	p = grains()
+	c, s = math.cos(turn), math.sin(turn)
+	length = lambda p, e: geometricLength(p @ np.array([(c, s), (-s, c)]) + shift, e, 5e-3, (s, -c))
+	e = np.zeros(len(p))
+	whole = length(p, e)
+	assert whole == pytest.approx(0.1, abs=1e-3)
+	gone = p[:, 1] < 0.03
+	assert length(p, np.where(gone, 1.5, e)) == pytest.approx(0.07, abs=1e-3)  # debris where it was
+	head = np.where(gone, 0.8, e)
+	assert length(p, head) == pytest.approx(whole, abs=1e-3)  # strained, but rod
+	aside = p + np.where(gone, 8e-3 * np.sign(p[:, 0]), 0.)[:, None] * (1, 0)
+	assert length(aside[p[:, 0] != 0], head[p[:, 0] != 0]) == pytest.approx(0.07, abs=1e-3)  # turned aside beyond the radius
+	ahead = np.concatenate((p, [(0., -0.05)] * 3))
+	assert length(ahead, np.append(e, [0.9] * 3)) == pytest.approx(whole, rel=1e-2)  # a few grains ahead
+	assert length(p, e + 0.5) == 0
 
 
 def test_momentum_settles():

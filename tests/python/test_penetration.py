@@ -49,7 +49,7 @@ def test_aRunReportsAndWritesEverything(tmp_path, capsys, mode):
 	assert cli.main(['penetration', *SCENE, '--mode', mode, '--out', str(out), '--json', str(tmp_path / 'r.json')]) == 0
 	c = cases(tmp_path / 'r.json')
 	n = 'T16/%s/' % mode
-	assert {n + k for k in ('lengthLoss', 'velocityLossTail', 'velocityLossAll', 'energyError', 'energyBooked', 'momentumBooked', 'automataLost', 'clamped', 'deepest', 'wall')} <= set(c)
+	assert {n + k for k in ('lengthLoss', 'lengthLossUnbroken', 'lengthLossGeometric', 'velocityLossTail', 'velocityLossAll', 'energyError', 'energyBooked', 'momentumBooked', 'automataLost', 'clamped', 'deepest', 'wall')} <= set(c)
 	assert 0.02 < c[n + 'lengthLoss']['value'] < 0.4 and 0 < c[n + 'velocityLossTail']['value'] < c[n + 'velocityLossAll']['value'] < 0.3
 	assert c[n + 'energyError']['limit'] == 0.01 and c[n + 'energyBooked']['limit'] == 1e-10 and c[n + 'momentumBooked']['limit'] == 1e-12
 	names = {p.name for p in out.iterdir()}
@@ -61,6 +61,28 @@ def test_aRunReportsAndWritesEverything(tmp_path, capsys, mode):
 	assert any('grid_' in p.name for p in vtk) == any('interface_' in p.name for p in vtk) == (mode == 'coupled')
 	shown = capsys.readouterr().out
 	assert 'Alekseevskii-Tate' in shown and 'plastic strain < 0.3' in shown and 'time 12 us reached' in shown
+
+
+@pytest.mark.parametrize('mode', ['coupled', 'mca'])
+def test_obliqueAndTurned(tmp_path, capsys, mode):
+	"""To the exit and beyond, by the task: exit is read normal to the face, the published table is for normal impact only, and the run restarts identically."""
+	words = ['penetration', '--spacing', '2', '--thickness', '8', '--rod-length', '40', '--mode', mode, '--angle', '-12', '--obliquity', '35', '--until', '30', '--checkpoint-interval', '0.01']
+	out = tmp_path / 'out'
+	assert cli.main([*words, '--out', str(out)]) == 0
+	c, n = cases(out / 'summary.json'), 'T8/%s/' % mode
+	r = {k: np.array(v) for k, v in record(out / 'summary.json').items()}
+	at = c[n + 'exitTime']['value']
+	assert np.interp(at, r['time'], r['clearance']) == pytest.approx(5e-3, rel=1e-6)
+	assert at > (8e-3 / np.cos(np.radians(35)) + 5e-3) / 1520  # not before the rod could be there
+	assert c[n + 'atExit/lengthLossGeometric']['value'] == pytest.approx(np.interp(at, r['time'], r['lengthLossGeometric']), rel=1e-9) and r['lengthLossGeometric'][0] == pytest.approx(0, abs=1e-3)
+	assert all(x['passed'] for x in c.values()) and n + 'publishedLengthLoss' not in c
+	shown = capsys.readouterr().out
+	assert 'angle -12 deg, obliquity 35 deg' in shown and 'published' not in shown and 'length' in shown
+	again = tmp_path / 'again'
+	assert cli.main(['penetration', '--restart', str(out / 'penetration.checkpoint'), '--until', '32', '--out', str(again)]) == 0
+	whole = tmp_path / 'whole'
+	assert cli.main([*words[:-4], '--until', '32', '--out', str(whole)]) == 0
+	assert record(again / 'summary.json') == record(whole / 'summary.json')
 
 
 def test_paraviewFilesHoldTheScene(plugin, tmp_path):
@@ -215,6 +237,12 @@ def test_damagedCheckpointsAreRefused(plugin, tmp_path, capsys, damage):
         (['--seed', '-1'], 'whole number'),
         (['--width', '70'], 'no room'),
         (['--spread', '2'], 'from 0 to 1'),
+        (['--obliquity', '80'], 'from -75 to 75 degrees'),
+        (['--angle', 'nan'], 'from -180 to 180 degrees'),
+        (['--obliquity', '70', '--thickness', '30'], 'too narrow'),
+        (['--angle', '20', '--width', '84'], 'lean by 20 degrees'),
+        (['--speed', '1e9'], 'times the sound speed'),
+        (['--rod-length', '1e9'], 'take a spacing of at least'),
         (['--dt-factor', '1.5'], 'limit of stability'),
         (['--until', '-5'], 'above 0'),
         (['--threads', '0'], 'above 0'),
@@ -240,12 +268,13 @@ def test_optionsReachTheScene(plugin):
 
 	from yade_mca.tasks import penetration_options as options
 	args = Namespace(mode='mca', spacing=2., thickness=16., fracture_strain=0.7, eos='mieGruneisen', friction=0.3, viscosity=2., volume_rule='inversePower', dt_factor=0.2, seed=7,
-	                 speed=1000., spread=0.1, yield_model='linearHardening')
+	                 speed=1000., spread=0.1, yield_model='linearHardening', obliquity=30., angle=60.)
 	options.fill(args)
 	s = options.sceneOf(args)
 	m = {x.label: x for x in O.materials}['4340']
 	assert (m.fractureStrain, m.eos, m.yieldModel, m.strengthSpread, m.viscosityQuadratic) == (0.7, 'mieGruneisen', 'linearHardening', 0.1, 2.4)
 	assert np.tan(m.frictionAngle) == pytest.approx(0.3) and m.spallStrength == 3e9
+	assert s.facts['direction'] == pytest.approx((0.5, -np.sqrt(0.75))) and s.facts['angle'] == pytest.approx(np.pi / 3)
 	assert (s.automata.volumeRule, s.automata.dtFactor, s.automata.seed, s.facts['speed'], s.facts['ends']) == ('inversePower', 0.2, 7, 1000., 'viscous')
 
 

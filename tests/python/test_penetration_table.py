@@ -39,13 +39,16 @@ def test_table(tmp_path, capsys, monkeypatch):
 			assert c[name + 'lengthLoss']['reference'] == penetration_report.published(t, mode)[0]
 			assert 0 < c[name + 'velocityLossTail']['value'] < c[name + 'velocityLossAll']['value'] < 0.5
 			assert c[name + 'energyBooked']['passed'] and c[name + 'momentumBooked']['passed'] and c[name + 'automataLost']['value'] == 0
+	for row in data['table1']['rows']:
+		assert row['atExit/lengthLossGeometric'] is None or 0 < row['atExit/lengthLossGeometric'] < row['lengthLoss'] + 0.1
+	assert data['table1']['rows'][0]['atExit/lengthLossGeometric'] > 0 and 'as a length' in data['table1']['definitions']['lengthLossGeometric']
 	assert c['coupled/velocityLossAll/rises']['passed'] and c['mca/lengthLoss/rises']['passed']
 	assert c['wall']['value'] > 0 and (tmp_path / 'table1.png').stat().st_size > 10000
 	shown = capsys.readouterr().out
-	assert 'published' in shown and 'Tate' in shown and 'experiment at 25 mm' in shown and 'total' in shown
+	assert 'As a length, when the head leaves the plate' in shown and 'published' in shown and 'Tate' in shown and 'experiment at 25 mm' in shown and 'total' in shown
 	assert penetration_doc.write(str(tmp_path)) == ['table1']
 	text = (tmp_path / 'penetration-table1.inc').read_text()
-	assert '.. list-table::' in text and '%.3f' % c['T15/coupled/lengthLoss']['value'] in text
+	assert '.. list-table::' in text and '%.3f' % c['T15/coupled/lengthLoss']['value'] in text and 'as length, at exit' in text
 
 
 def test_aRunThatFailsIsReportedNotLost(capsys, monkeypatch):

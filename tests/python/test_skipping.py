@@ -130,22 +130,6 @@ def test_searchesFollowTheWayOfBodiesAgainstEachOther(plugin):
 		assert abs(e.counters()['searches'] - way / (skin * D)) < 0.05 * way / (skin * D) + 2
 
 
-@pytest.mark.parametrize('period, written', [(0, [29]), (10, [9, 19, 29]), (1, list(range(30)))])
-def test_bodiesAreWrittenAsOftenAsAskedFor(plugin, period, written):
-	"""Counts the steps in which the positions of the bodies have changed."""
-	from yade import O
-	from yade.wrapper import PyRunner
-	e = bar(20, writePeriod=period)
-	seen = []
-	import builtins
-	builtins.seenBySkipping = lambda: seen.append(O.bodies[0].state.pos[0])
-	O.engines = [e, PyRunner(command='seenBySkipping()', iterPeriod=1, initRun=True)]
-	O.run(30, True)
-	start = O.bodies[0].state.refPos[0]
-	assert len(seen) == 30
-	assert [k for k in range(30) if seen[k] != (seen[k - 1] if k else start)] == written and e.lastWritten == 29
-
-
 def test_writingBackAndTimingChangeNoBit(plugin):
 	from yade import O
 	found = set()

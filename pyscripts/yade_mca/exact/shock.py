@@ -28,8 +28,11 @@ class Hugoniot:
 		return self.rho0 * self.shockSpeed(u) * u
 
 	def strain(self, u):
-		"""Volume strain J - 1 = -u/D [-]."""
-		return -u / self.shockSpeed(u)
+		"""Volume strain J - 1 = -u/D [-]. Raises ValueError where u reaches D, which would compress to nothing (b < 1 only)."""
+		D = self.shockSpeed(u)
+		if not np.all(np.asarray(u) < D):
+			raise ValueError('particle speed %r m/s must be below the shock speed c0 + b u = %r m/s: nothing would be left of the volume' % (u, D))
+		return -u / D
 
 	def density(self, u):
 		"""rho [kg/m3] behind the shock."""

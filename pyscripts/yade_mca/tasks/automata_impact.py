@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ..packings import Rectangle, hexagonal
+from .. import scenes
 from .automata_scene import AutomataRun, Bar, material, order
 from .grid_scene import GridRun
 
@@ -23,34 +23,34 @@ def outline(y, x):
 	return 2 * np.interp(HEIGHTS, y[o], x[o]) / WIDTH
 
 
-def barOfAutomata(n):
-	"""Length and widths at the end over those at the start, and the error of the energy sum; n automata across. The lowest row stays at y = 0: a smooth anvil."""
-	run = AutomataRun(account=True)
-	p = hexagonal(WIDTH / n, Rectangle((0, 0.5 * LENGTH), (WIDTH, LENGTH)), origin=(0., 0.))
+def barOfAutomata(n, material=None, speed=SPEED, end=END):
+	"""Length and widths at the end over those at the start, and the error of the energy sum; n automata across, on a smooth anvil."""
+	from yade import O
+	O.reset()
+	run = AutomataRun(scenes.taylorBar(material or soft(), LENGTH, WIDTH, WIDTH / n, speed, engineOptions=dict(account=True)))
+	p = run.scene.packings['bar']
 	x0, y0 = abs(p.positions[:, 0]), p.positions[:, 1]
-	foot, rear, side = y0 < 0.1 * p.spacing, y0 > y0.max() - 1.2 * p.spacing, x0 > 0.5 * WIDTH - 0.8 * p.spacing
-	ids = run.add('bar', p, soft(), velocity=np.stack((0 * y0, np.where(foot, 0., -SPEED)), axis=1))
-	run.block(ids[foot], 'y')
+	rear, side = y0 > y0.max() - 1.2 * p.spacing, x0 > 0.5 * WIDTH - 0.8 * p.spacing
 	length = []
-	while run.O.time < END:
+	while run.O.time < end:
 		run.steps(50)
-		if run.O.time > 0.75 * END: length.append(1 + (run.field('y', 'bar') - y0)[rear].mean() / LENGTH)
+		if run.O.time > 0.75 * end: length.append(1 + (run.field('y', 'bar') - y0)[rear].mean() / LENGTH)
 	x, y, e = run.field('x', 'bar'), run.field('y', 'bar'), run.engine.energies()
 	stretch = abs(x[side]) / x0[side]
 	return np.mean(length), outline(y[side], 0.5 * WIDTH * stretch), e['total'] / e['kineticStart'] - 1
 
 
-def barOfCells(n):
+def barOfCells(n, material=None, speed=SPEED, end=END):
 	"""The same on the Lagrangian grid, half of the bar."""
 	run, h = GridRun(), WIDTH / n
-	run.engine.addRectangle(soft(), np.linspace(0, 0.5 * WIDTH, n // 2 + 1), np.linspace(0, LENGTH, round(LENGTH / h) + 1))
+	run.engine.addRectangle(material or soft(), np.linspace(0, 0.5 * WIDTH, n // 2 + 1), np.linspace(0, LENGTH, round(LENGTH / h) + 1))
 	run.engine.symmetry(0, 'left')
 	run.engine.symmetry(0, 'bottom')
-	run.engine.setVelocity(0, (0., -SPEED))
+	run.engine.setVelocity(0, (0., -speed))
 	length = []
-	while run.engine.time < END:
+	while run.engine.time < end:
 		run.steps(50)
-		if run.engine.time > 0.75 * END: length.append(run.view(0, 'y')[-1].mean() / LENGTH)
+		if run.engine.time > 0.75 * end: length.append(run.view(0, 'y')[-1].mean() / LENGTH)
 	return np.mean(length), outline(run.view(0, 'y')[:, -1], run.view(0, 'x')[:, -1])
 
 
@@ -86,7 +86,8 @@ def spallBar(flow, strength, depth, rise=30, peak=1.4):
 	up, start, decay = peak * sigma / (m.density * c), rise * d / c, 2 * peak * depth * d / c
 	columns = round(2.5 * peak * depth) + depth + rise
 	bar = Bar(d, 0., 6)
-	piston = bar.drive('bar', bar.body('bar', m, 0., columns * d), 0.)
+	bar.body('bar', m, 0., columns * d)
+	piston = bar.drive('bar', 0.)
 	surface = []
 	while bar.O.time < (columns + 3.2 * depth) * d / c:
 		bar.steps(10)

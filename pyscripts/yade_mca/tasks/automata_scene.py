@@ -1,15 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the cases of `verify automata` share: a scene with one McaEngine, bars in uniaxial strain, profiles, fronts."""
+"""What the cases of `verify automata` share: running a scene of yade_mca.scenes, bars in uniaxial strain, fronts."""
 import math
-from dataclasses import replace
 
 import numpy as np
 
-from .. import materials
-from .._yade import yadeClass
+from .. import materials, scenes
 from ..packings import Rectangle, addBodies, hexagonal
-
-PITCH = 0.5 * math.sqrt(3)  #: distance of close-packed rows over the spacing
 
 
 def material(name, **overrides):
@@ -41,24 +37,16 @@ def impactBlocks(speed=400., n=10, **changes):
 
 
 class AutomataRun:
-	"""An empty scene with one McaEngine of the given attributes."""
+	"""A scene of automata that is run: an empty one with a McaEngine of the given attributes, or that of a builder, `scene`."""
 
-	def __init__(self, **attributes):
+	def __init__(self, scene=None, **attributes):
 		from yade import O
-		O.reset()
 		self.O = O
-		self.engine = yadeClass('McaEngine')(**attributes)
-		O.engines = [self.engine]
-		self.ids = {}
-
-	def add(self, part, packing, mat, **options):
-		self.ids[part] = np.array(addBodies(packing, mat, **options))
-		return self.ids[part]
-
-	def block(self, ids, dofs):
-		"""Blocks degrees of freedom of bodies for good; those out of the plane are always blocked."""
-		for i in np.asarray(ids).tolist():
-			self.O.bodies[i].state.blockedDOFs = 'zXY' + dofs
+		if scene is None:
+			O.reset()
+			scene = scenes.start(attributes)
+		self.scene, self.engine, self.ids = scene, scene.automata, scene.ids
+		self.add, self.block = scene.add, scene.block
 
 	def move(self, ids, vx=None, vy=None, spin=None):
 		"""Sets velocities; arrays or numbers."""
@@ -88,58 +76,26 @@ class AutomataRun:
 			self.steps(max(1, int((time - self.O.time) / self.O.dt / 1.02)))
 
 	def field(self, name, part=None):
-		f = self.engine.field(name)
-		return f if part is None else f[np.searchsorted(self.engine.ids, self.ids[part])]
+		return self.engine.field(name) if part is None else self.scene.field(part, name)
 
 
 class Bar(AutomataRun):
-	"""Bodies side by side along x in uniaxial strain between two lines of mirror symmetry: what lies on them counts half and keeps its y.
-
-	angle: 0 or 90 degrees between the close-packed rows and x; rows: height over the spacing, even.
-	"""
+	"""Bodies side by side along x in uniaxial strain, scenes.strip(); angle: 0 or pi/2 between the close-packed rows and x; rows: height over the distance of rows, even."""
 
 	def __init__(self, spacing, angle, rows, **attributes):
 		super().__init__(**attributes)
-		self.spacing, self.angle = spacing, angle
-		self.height = rows * spacing * (PITCH if angle == 0 else 1.)
-		self.middle, self.columns = {}, {}
+		self.spacing, self.angle, self.rows = spacing, angle, rows
 
 	def body(self, part, mat, start, length, **options):
-		d, half = self.spacing, 0.5 * self.height
-		p = hexagonal(d, Rectangle((start + 0.5 * length, 0), (length, 2 * half + 1e-6 * d)), angle=self.angle, origin=(start + (0.25 if self.angle == 0 else 0.5) * d, 0.), rim='full')
-		p = p.translated((start + 0.5 * d - p.positions[:, 0].min() + (0. if self.angle == 0 else (PITCH - 1) * 0.5 * d), 0.))
-		# corners: an automaton with two links measures no volume and carries no pressure; a plane wave needs none
-		while (few := np.bincount(p.pairs().ravel(), minlength=len(p)) < 3).any():
-			p = p.select(~few)
-		y = abs(p.positions[:, 1])
-		p = replace(p, weight=np.where(y > half - 0.1 * d, 0.5, 1.))
-		ids = self.add(part, p, mat, **options)
-		# the automata next to a line push along y with fewer links than the mirror image would give them: two rows are held
-		self.block(ids[y > half - 2.1 * d], 'yZ')
-		self.middle[part] = y < 0.5 * half
-		self.end = p.positions[:, 0].max() + 0.5 * d
-		return p
+		scenes.addStrip(self.scene, part, scenes.strip(self.spacing, start, length, self.rows, self.angle), mat, **options)
+		return self.scene.packings[part]
 
-	def drive(self, part, p, vx):
+	def drive(self, part, vx):
 		"""The columns within one spacing of the left end of `part` move with vx [m/s]."""
-		ids = self.ids[part][p.positions[:, 0] < p.positions[:, 0].min() + 1.1 * self.spacing]
-		self.block(ids, 'xyZ')
-		self.move(ids, vx=vx)
-		return ids
+		return scenes.driveEnd(self.scene, part, vx)
 
 	def profile(self, part, *names):
-		"""x and the fields of the middle rows of `part`, mean over the height in columns of one spacing of material, from left to right."""
-		keep = self.middle[part]
-		column = self._column(part)
-		mean = lambda f: np.bincount(column, f[keep]) / np.bincount(column)
-		return [mean(self.field(n, part)) for n in ('x', *names)]
-
-	def _column(self, part):
-		if part not in self.columns:
-			x = np.array([self.O.bodies[int(i)].state.refPos[0] for i in self.ids[part]])[self.middle[part]]
-			pitch = self.spacing * (1. if self.angle == 0 else PITCH)
-			self.columns[part] = np.floor((x - x.min()) / pitch + 1e-6).astype(int)
-		return self.columns[part]
+		return scenes.profile(self.scene, part, *names)
 
 
 def crossing(x, f, level):

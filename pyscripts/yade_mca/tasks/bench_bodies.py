@@ -25,11 +25,11 @@ def engineOptions(job):
 
 
 def taylorBar(job):
-	"""Copper bar on a rigid anvil, n automata across: final length and width of the foot over the original ones."""
+	"""Copper bar on a rough rigid anvil, n automata across: final length and width of the foot over the original ones."""
 	from .automata_scene import material
 	begin, d = time.perf_counter(), TAYLOR['diameter'] / job['n']
 	m = material('OFHC_Cu', eos='shockAdiabat', yieldModel='johnsonCook', fractureStrain=1.)
-	s = scenes.taylorBar(m, TAYLOR['length'], TAYLOR['diameter'], d, TAYLOR['speed'], engineOptions=dict(engineOptions(job), dtFactor=job['factor']))
+	s = scenes.taylorBar(m, TAYLOR['length'], TAYLOR['diameter'], d, TAYLOR['speed'], anvil='rough', engineOptions=dict(engineOptions(job), dtFactor=job['factor']))
 	meter, built = Meter(s.automata), time.perf_counter() - begin
 	meter.until(TAYLOR['until'])
 	cost, e = meter.record(), s.automata.energies()

@@ -96,7 +96,7 @@ def peers(records):
 
 
 def add(report, records):
-	"""The cases of the report: errors and times of all runs, and the ratios; only ratios of one run have limits."""
+	"""The cases of the report: errors and times of all runs, and the ratios; only ratios of one run have limits, all else is measured and not judged."""
 	for r in records:
 		if r.get('failed') or (r.get('ended') and not r['mayEnd']):
 			report.add(r['name'], math.nan, unit=r.get('failed') or r['ended'])
@@ -106,13 +106,13 @@ def add(report, records):
 		if r.get('energyError') is not None: report.add(r['name'] + '/energyError', r['energyError'], unit='of the energy in play')
 	for n, kind, threads, road, ns, ratio, load in peers(records):
 		label = 'law/N%d/%s/%dthreads/' % (n, kind, threads)
-		report.add(label + road, ns, TARGETS['nanoseconds'] if road == 'McaEngine' and threads == 1 and kind in ('plastic', 'random') else None, unit='ns per automaton and step')
+		report.add(label + road, ns, unit='ns per automaton and step')  # depends on the machine: TARGETS['nanoseconds'] is an aim that the documentation tells, not a limit
 		if ratio and road != 'McaEngine':
 			held = road == 'CpmMat' and threads == 1
-			report.add(label + road + 'OverMcaEngine', ratio, limit=TARGETS['peer'] if held else None, unit='times', passed=not held or ratio >= TARGETS['peer'])
+			report.add(label + road + 'OverMcaEngine', ratio, limit=TARGETS['peer'] if held else None, unit='times', passed=ratio >= TARGETS['peer'] if held else None)
 	for name, ratio, load in speedUps(records):
 		held = name.startswith('law/McaEngine') and load <= IDLE
-		report.add(name + '/2threads', ratio, limit=TARGETS['threads'] if held else None, unit='times as fast as 1 thread, load %.1f' % load, passed=not held or ratio >= TARGETS['threads'])
+		report.add(name + '/2threads', ratio, limit=TARGETS['threads'] if held else None, unit='times as fast as 1 thread, load %.1f' % load, passed=ratio >= TARGETS['threads'] if held else None)
 	for width, n, error, coupled, alone, ratio, inside in equalError(records):
 		report.add('equalError/w%d/N%d' % (width, n), ratio, unit='automata only over coupled' + ('' if inside else ', extended'))
 	for width, n, coupled, alone, ratio, *off in widths(records):

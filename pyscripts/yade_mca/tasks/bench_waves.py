@@ -94,8 +94,8 @@ def plasticShock(job):
 	end = 0.75 * n * D / ref['precursorD']
 	if job['solver'] == 'automata':
 		s = Bar(D, 0., ROWS, volumeRule=job['rule'], dtFactor=job['factor'], sleeping=job['sleeping'], account=job['account'], contacts=False)
-		p = s.body('bar', m, 0., n * D)
-		driven = s.drive('bar', p, SPEED)
+		s.body('bar', m, 0., n * D)
+		driven = s.drive('bar', SPEED)
 		face = max(s.O.bodies[int(i)].state.refPos[0] for i in driven)
 		meter = Meter(s.engine)
 	else:

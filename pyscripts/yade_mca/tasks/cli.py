@@ -3,14 +3,13 @@
 import argparse
 import difflib
 import os
-import select
 import sys
 import traceback
 
-from . import registry
+from . import registry, streams
 from .progress import Progress
 from .registry import UsageError
-from .report import Report
+from .report import Report, isPlain
 
 PROGRAM = os.environ.get('YADE_MCA_PROGRAM', 'pyscripts/run')
 
@@ -59,7 +58,10 @@ def checkCommon(args):
 	if args.json is not None:
 		if os.path.isdir(args.json) or not args.json:
 			raise UsageError("--json: '%s' is not a file name" % args.json)
-		writable(os.path.dirname(os.path.abspath(args.json)), '--json')
+		if isPlain(args.json):
+			writable(os.path.dirname(os.path.realpath(args.json)), '--json')
+		elif not os.access(args.json, os.W_OK):
+			raise UsageError("--json: '%s' is not writable" % args.json)
 	if args.out is not None:
 		try:
 			os.makedirs(args.out, exist_ok=True)
@@ -106,15 +108,19 @@ def setThreads(args):
 		os.execv(sys.executable, [sys.executable, '-m', __package__, *sys.argv[1:]])
 
 
-def readerGone():
-	"""True when what is printed reaches nobody any more (`... | head -1`); then the task ends without a word."""
-	poll = select.poll()
-	poll.register(1, 0)
-	return any(event & select.POLLERR for _, event in poll.poll(0))
-
-
 def main(argv=None):
-	"""Runs a task; returns the status of the process. Raises BrokenPipeError when nobody reads what it prints."""
+	"""Runs a task; returns the status of the process. argv: None for the words of the command line."""
+	if argv is not None:
+		return runTask(argv)
+	streams.install()
+	status = runTask(None)
+	why = streams.refused()
+	if why:
+		print('%s: the standard output could not be written: %s' % (PROGRAM, why), file=sys.stderr)
+	return 1 if why and not status else status
+
+
+def runTask(argv):
 	try:
 		args, module = parse(sys.argv[1:] if argv is None else argv)
 	except UsageError as e:
@@ -131,7 +137,6 @@ def main(argv=None):
 	except KeyboardInterrupt:
 		report.error = 'interrupted'
 	except Exception as e:
-		if isinstance(e, BrokenPipeError) and readerGone(): raise
 		report.error = '%s: %s' % (type(e).__name__, e)
 		if args.debug:
 			traceback.print_exc()

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""`penetration`: a tungsten-alloy rod through a steel plate, from the scene to table, pictures, ParaView files and checkpoint.
+"""`penetration`: a tungsten-alloy rod through a steel plate, from the scene to table, pictures, animation, page, ParaView files and checkpoint.
 
 What is reported, and when, is defined in yade_mca/measure.py and yade_mca/impact.py.
 """
+import math
 import os
 import sys
 import time
@@ -15,6 +16,7 @@ from .registry import UsageError
 
 SUMMARY = registry.SUMMARIES['penetration']
 CHECKPOINT = 'penetration.checkpoint'
+PAGE = 'penetration.html'
 SHARE = 0.05  #: of the time that may go into checkpoints
 
 
@@ -24,7 +26,9 @@ def addArguments(parser):
 	group.add_argument('--until', metavar='US', type=positive(float, 'us'), help='end at the first sample from this time on, instead of by the physical criterion')
 	group.add_argument('--longest', metavar='US', type=positive(float, 'us'), default=150., help='end at this time in any case (default: 150)')
 	group.add_argument('--restart', metavar='FILE', help='go on from a checkpoint; the scene is that of the checkpoint')
-	group.add_argument('--no-files', action='store_true', help='no pictures, ParaView files or checkpoints')
+	group.add_argument('--no-files', action='store_true', help='no pictures, page, ParaView files or checkpoints')
+	group.add_argument('--no-page', action='store_true', help='no penetration.html, the page that shows the run')
+	group.add_argument('--no-animation', action='store_true', help='no penetration.gif')
 	group.add_argument('--checkpoint-interval', metavar='S', type=positive(float, 's'), default=2., help='least time between checkpoints (default: 2)')
 
 
@@ -100,7 +104,7 @@ def expectedEnd(run):
 	f = run.scene.facts
 	if run.until is not None:
 		return run.until
-	tate = tatePlate(f['rodLength'], f['thickness'], f['speed'], **results.TATE)
+	tate = tatePlate(f['rodLength'], f['thickness'] / math.cos(f['obliquity']), f['speed'], **results.TATE)
 	return min(run.longest, 1.3 * tate['time'] + run.window + f['rodDiameter'] / f['speed'])
 
 
@@ -112,7 +116,7 @@ def run(args, report, progress):
 	output = keeper = None
 	if not args.no_files:
 		from ..impact_output import Output
-		output = Output(args.out, resumeAt=resumed)
+		output = Output(args.out, resumeAt=resumed, animation=not args.no_animation)
 		saved = {k: getattr(args, k) for k in (n.replace('-', '_') for n in options.SCENE)}
 		keeper = Keeper(os.path.join(args.out, CHECKPOINT), args.checkpoint_interval, dict(options=saved))
 		if resumed is None:
@@ -137,12 +141,27 @@ def run(args, report, progress):
 				output.update(run)
 				keeper.update(run)
 	wall = time.perf_counter() - began
-	if keeper:
-		output.update(run, end=True)
-		keeper.update(run, end=True)
 	results.add(report, run, args, wall)
-	report.extra['penetration'].update(wallWithFiles=time.perf_counter() - began, checkpointFailures=keeper.failures if keeper else 0)
-	print(results.text(run, args))
+	print(results.text(run, args), flush=True)
 	if keeper:
-		report.write(os.path.join(args.out, 'summary.json'))
-		print('pictures, ParaView files (penetration.pvd), checkpoint and summary.json are in %s' % os.path.abspath(args.out))
+		finish(run, args, report, output, keeper, began, wall)
+
+
+def finish(run, args, report, output, keeper, began, wall):
+	"""Writes what is written at the end, the numbers first. Files that cannot be written are named in one error at the end; everything else is there then."""
+	record, summary = report.extra['penetration'], os.path.join(args.out, 'summary.json')
+	record['checkpointFailures'] = keeper.failures
+	output.attempt(summary, report.write, summary)
+	output.update(run, end=True)
+	keeper.update(run, end=True)
+	if not args.no_page:
+		from . import penetration_page
+		start, path = time.process_time(), os.path.join(args.out, PAGE)
+		output.attempt(path, penetration_page.write, path, run, args, report, args.out, wall)
+		output.seconds['page'] = time.process_time() - start
+	record.update(checkpointFailures=keeper.failures, wallWithFiles=time.perf_counter() - began, processorSecondsOfFiles=output.seconds)
+	output.attempt(summary, report.write, summary)
+	print('%s, ParaView files (penetration.pvd), checkpoint and summary.json are in %s' % (
+	        ', '.join(['pictures', *['animation (penetration.gif)'] * (not args.no_animation), *['page (%s)' % PAGE] * (not args.no_page)]), os.path.abspath(args.out)))
+	if output.failures:
+		raise OSError('%d files could not be written: %s' % (len(output.failures), '; '.join("'%s': %s" % f for f in output.failures.items())))

@@ -30,9 +30,9 @@ def madeBy(data, command):
 
 
 def table1(data):
-	rows = [('%g' % r['thickness'], r['mode'], number(r['lengthLoss']), number(r['lengthLossUnbroken']), number(r['publishedLengthLoss'], 2), number(r['tateLengthLoss']), number(r['velocityLossTail']),
+	rows = [('%g' % r['thickness'], r['mode'], number(r['lengthLoss']), number(r['lengthLossUnbroken']), number(r['atExit/lengthLossGeometric']), number(r['publishedLengthLoss'], 2), number(r['tateLengthLoss']), number(r['velocityLossTail']),
 	         number(r['velocityLossAll']), number(r['publishedVelocityLoss'], 2), number(r['tateVelocityLoss'])) for r in data['table1']['rows']]
-	head = ('plate [mm]', 'mode', 'dl/l0', 'dl/l0 with head', 'published', 'Tate', 'dU/U0, tail', 'dU/U0, all', 'published', 'Tate')
+	head = ('plate [mm]', 'mode', 'dl/l0 by mass', 'by mass, with head', 'as length, at exit', 'published', 'Tate', 'dU/U0, tail', 'dU/U0, all', 'published', 'Tate')
 	worst = max(c['value'] for c in data['cases'] if c['name'].endswith('energyError'))
 	return listTable('Six thicknesses in both modes', head, rows) + '\nLargest drift of the independent energy sum: %.1f %%. ' % (100 * worst) + madeBy(data, 'table1')
 

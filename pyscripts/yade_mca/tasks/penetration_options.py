@@ -18,6 +18,21 @@ def fraction(text):
 	return value
 
 
+def degrees(largest):
+	"""A type for argparse: an angle from -largest to largest [degrees]."""
+
+	def convert(text):
+		try:
+			value = float(text)
+		except ValueError:
+			value = math.nan
+		if not abs(value) <= largest:
+			raise argparse.ArgumentTypeError("'%s' is not an angle from -%g to %g degrees" % (text, largest, largest))
+		return value
+
+	return convert
+
+
 def seed(text):
 	"""A type for argparse: a whole number from 0 on."""
 	if not text.isdigit() or int(text) > 2**31 - 1:
@@ -37,6 +52,8 @@ SCENE = {
         'width': (120., dict(type=positive(float, 'mm'), metavar='MM', help='whole width of the plate when coupled; with automata only it is --automata-width')),
         'rod-length': (100., dict(type=positive(float, 'mm'), metavar='MM', help='of the rod')),
         'rod-diameter': (10., dict(type=positive(float, 'mm'), metavar='MM', help='of the rod')),
+        'angle': (0., dict(type=degrees(180), metavar='DEG', help='by which the packings are turned against the normal of the plate and the axis of the rod')),
+        'obliquity': (0., dict(type=degrees(75), metavar='DEG', help='between the flight of the rod and the normal of the plate')),
         'yield-model': (None, dict(choices=['johnsonCook', 'linearHardening', 'perfect', 'elastic'], help='of both materials (default: Johnson-Cook)')),
         'eos': ('shockAdiabat', dict(choices=['shockAdiabat', 'mieGruneisen', 'linear'], help='equation of state of both materials')),
         'fracture-strain': (1., dict(type=positive(float), metavar='X', help='plastic strain at which pairs unlink')),
@@ -85,14 +102,24 @@ def checkScene(thickness, spacing, args):
 		raise UsageError('--width: %g mm leaves no room for a grid beside %g mm of automata' % (args.width, args.automata_width))
 	if args.dt_factor > 1:
 		raise UsageError('--dt-factor: %g is above 1, the limit of stability' % args.dt_factor)
+	from .. import scenes
+	try:
+		scenes.checkImpact(**dict(sizes(args), thickness=1e-3 * thickness, spacing=1e-3 * spacing), rod='WHA_JC', plate='4340')
+	except scenes.SceneError as e:
+		raise UsageError(str(e)) from None
+
+
+def sizes(args):
+	"""Keywords of scenes.penetration() that give its geometry and speed, SI units."""
+	return dict(thickness=1e-3 * args.thickness, spacing=1e-3 * args.spacing, speed=args.speed, mode=args.mode, rodLength=1e-3 * args.rod_length, rodDiameter=1e-3 * args.rod_diameter,
+	            automataWidth=1e-3 * args.automata_width, plateWidth=1e-3 * args.width, angle=math.radians(args.angle), obliquity=math.radians(args.obliquity))
 
 
 def sceneOf(args):
 	"""Builds the scene of filled options."""
 	from .. import scenes
 	return scenes.penetration(
-	        thickness=1e-3 * args.thickness, spacing=1e-3 * args.spacing, speed=args.speed, mode=args.mode, ends=args.ends, rodLength=1e-3 * args.rod_length,
-	        rodDiameter=1e-3 * args.rod_diameter, automataWidth=1e-3 * args.automata_width, plateWidth=1e-3 * args.width, fractureStrain=args.fracture_strain,
+	        **sizes(args), ends=args.ends, fractureStrain=args.fracture_strain,
 	        spallStrength=(args.spall * scenes.SPALL[0], args.spall * scenes.SPALL[1]), strengthSpread=args.spread, friction=args.friction, eos=args.eos, yieldModel=args.yield_model, viscosity=args.viscosity, seed=args.seed,
 	        dtFactor=args.dt_factor, engineOptions=dict(volumeRule=args.volume_rule))
 

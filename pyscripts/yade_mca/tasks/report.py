@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import stat
 import sys
 import tempfile
 import time
@@ -22,6 +23,7 @@ class Case:
 	unit: str = ''
 	order: float = None
 	passed: bool = True
+	asserted = True  # not a field of the file: False where nothing but finite numbers is asked for
 
 
 def _plain(x):
@@ -47,12 +49,43 @@ def jsonable(x):
 
 
 def writeAtomically(path, data):
-	"""Writes `data` (bytes or str) to `path` so that a reader finds the old file or the whole new one, never a part."""
-	folder = os.path.dirname(os.path.abspath(path))
-	handle, temporary = tempfile.mkstemp(prefix='.' + os.path.basename(path) + '.', dir=folder)
+	"""Writes `data` (bytes or str) to `path` so that a reader finds the old file or the whole new one, never a part.
+
+	Links are followed. What is no regular file (a device, a pipe) is written as it stands. Raises OSError that names `path`.
+	"""
+	data = data.encode() if isinstance(data, str) else data
+	try:
+		if isPlain(path):
+			_replace(os.path.realpath(path), data)
+		else:
+			_writeInto(path, data)
+	except OSError as e:
+		raise OSError(e.errno, e.strerror or str(e), str(path)) from e
+
+
+def isPlain(path):
+	"""True when `path` can be replaced by a new file: a regular file or none yet, and not one that this or another process holds open (/dev/stdout)."""
+	try:
+		if not stat.S_ISREG(os.stat(path).st_mode):
+			return False
+	except FileNotFoundError:
+		pass
+	return not os.path.abspath(path).startswith(('/dev/', '/proc/'))
+
+
+def _writeInto(path, data):
+	if sys.stdout: sys.stdout.flush()  # which `path` may be
+	handle = os.open(path, os.O_WRONLY | os.O_APPEND)
+	with os.fdopen(handle, 'wb', buffering=0) as f:
+		while data:
+			data = data[f.write(data):]
+
+
+def _replace(path, data):
+	handle, temporary = tempfile.mkstemp(prefix='.' + os.path.basename(path) + '.', dir=os.path.dirname(path))
 	try:
 		with os.fdopen(handle, 'wb') as f:
-			f.write(data.encode() if isinstance(data, str) else data)
+			f.write(data)
 			f.flush()
 			os.fsync(f.fileno())
 		mask = os.umask(0)
@@ -85,8 +118,10 @@ class Report:
 		compared = error if error is not None else abs(value) if limit is not None else None
 		ok = _finite(value) and _finite(reference) and _finite(error)
 		holds = (limit is None or compared <= limit) if passed is None else bool(passed)
-		self.cases.append(Case(name, value, reference, error, limit, unit, order, bool(ok and holds)))
-		return self.cases[-1]
+		case = Case(name, value, reference, error, limit, unit, order, bool(ok and holds))
+		case.asserted = limit is not None or passed is not None
+		self.cases.append(case)
+		return case
 
 	@property
 	def failed(self):
@@ -112,11 +147,11 @@ class Report:
 		writeAtomically(path, json.dumps(self.asDict(), indent=1, allow_nan=False) + '\n')
 
 	def table(self):
-		"""The cases as text, one line each."""
+		"""The cases as text, one line each; the last word is empty where nothing is asserted."""
 		show = lambda x: '-' if x is None else '%.6g' % x if isinstance(x, float) else str(x)
 		head = ('case', 'value', 'reference', 'error', 'limit', 'order', 'unit', '')
 		rows = [(c.name, show(c.value), show(c.reference), '-' if c.error is None else '%.3g' % c.error, show(c.limit),
-		         '-' if c.order is None else '%.2f' % c.order, c.unit or '-', 'ok' if c.passed else 'FAILED') for c in self.cases]
+		         '-' if c.order is None else '%.2f' % c.order, c.unit or '-', 'FAILED' if not c.passed else 'ok' if c.asserted else '') for c in self.cases]
 		width = [max(len(r[k]) for r in [head, *rows]) for k in range(len(head))]
 		line = lambda r: '  '.join(r[k].ljust(width[k]) if k in (0, 6, 7) else r[k].rjust(width[k]) for k in range(len(head))).rstrip()
 		return '\n'.join(map(line, [head, *rows]))
@@ -125,5 +160,7 @@ class Report:
 		"""Prints the table and the summary line."""
 		if self.cases:
 			print(self.table(), file=self.stream)
-			print('%s: %d passed, %d failed, %.1f s' % (self.task, len(self.cases) - len(self.failed), len(self.failed), time.monotonic() - self._start),
+			passed = sum(c.passed and c.asserted for c in self.cases)
+			measured = len(self.cases) - len(self.failed) - passed
+			print('%s: %d passed, %d failed, %s%.1f s' % (self.task, passed, len(self.failed), '%d only measured, ' % measured if measured else '', time.monotonic() - self._start),
 			      file=self.stream)

@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 
+from .. import scenes
 from .._yade import scene as omega
 from ..packings import addBodies, disc, hexagonal
 from .automata_scene import Bar
@@ -101,14 +102,14 @@ def automataNoise(angle, **options):
 	noisy = jittered(p, NOISE, 4).positions
 	for i, (x, y) in zip(bar.ids['bar'].tolist(), noisy.tolist()):
 		bar.O.bodies[i].state.pos = (x, y, 0)
-	bar.drive('bar', p, SPEED * m.bulkSoundSpeed)
+	bar.drive('bar', SPEED * m.bulkSoundSpeed)
 	t = Trial(bar.engine)
 	speed = m.bulkSoundSpeed * (1 + m.hugoniotSlope * SPEED)
 	t.run(until=80 * D / speed)
 	n1, n2 = p.lattice[:, 0] - p.lattice[:, 1] // 2, p.lattice[:, 1]
 	x, P = bar.field('x', 'bar'), bar.field('pressure', 'bar')
 	front = 80 * D
-	keep = bar.middle['bar'] & (x > 0.35 * front) & (x < 0.8 * front)
+	keep = scenes.middle(p) & (x > 0.35 * front) & (x < 0.8 * front)
 	waves = [(-1.)**n for n in (n1, n2, n1 + n2)] + [np.exp(2j * math.pi * (n1 - n2) / 3)]
 	return t.measures(value=shortestWave(P[keep], x[keep], [w[keep] for w in waves]), unit='shortest wave over the mean pressure')
 

@@ -42,8 +42,7 @@ def check(args):
 	if args.doc and not os.path.isdir(args.doc):
 		raise registry.UsageError("--doc: folder '%s' does not exist" % args.doc)
 	args.parts = args.parts or list(PARTS)
-	args.mode, args.automata_width, args.width, args.rod_diameter, args.dt_factor = 'coupled', 80., 120., 10., 0.5
-	options.checkScene(args.thickness, args.spacing, args)
+	options.fill(args)
 
 
 def losses(result):

@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Every function and method of the package's modules that scripts call, with bad arguments, for test_every_call.py; found by looking at the modules."""
+import dataclasses
+import importlib
+import inspect
+import math
+
+import every_call_values as values
+
+MODULES = ('packings', 'outlines', 'measure', 'materials', 'scenes')
+#: records that functions return: nobody makes them
+RESULTS = ('RodMeasure', 'CellGeometry', 'Scene')
+D = 1e-3
+
+
+def packing():
+	from yade_mca import packings
+	return packings.hexagonal(D, packings.Rectangle((0, 0), (4 * D, 3 * D)))
+
+
+def rectangle():
+	from yade_mca import outlines
+	return outlines.Rectangle((0, 0), (4 * D, 3 * D))
+
+
+def predicate():
+	from yade import pack
+	return pack.inSphere((0, 0, 0), 4 * D)
+
+
+def record():
+	from yade_mca import materials
+	return materials.get('4340')
+
+
+def penetrationScene():
+	from yade_mca import scenes
+	return scenes.penetration(**{k: v for k, v in argumentsOf('scenes.penetration').items()})
+
+
+#: right arguments by name; functions make fresh ones. Where a name means different things: 'module.function.name'
+GOOD = {
+        'd': D, 'spacing': D, 'outline': rectangle, 'angle': 0., 'origin': (0., 0.), 'rim': 'cells', 'minWeight': 0.2, 'dim': None, 'packing': packing, 'material': '4340', 'velocity': (1., 0.),
+        'angularVelocity': 0., 'mask': 1, 'color': (0.5, 0.5, 0.5), 'by': (D, 0.), 'which': [0, 1, 2], 'point': (0., 0.), 'direction': (0., 1.), 'tolerance': 1e-3, 'scale': 1., 'density': 7800.,
+        'points': [(0, 0), (D, 0), (0, D)], 'holes': (), 'center': (0., 0.), 'size': (4 * D, 3 * D), 'radius': 3 * D, 'segments': 60, 'predicate': predicate, 'z': 0., 'pad': 0., 'shape': rectangle,
+        'cells': [[(0, 0), (D, 0), (0, D)]], 'mass': [1., 1.], 'plasticStrain': [0., 0.2], 'impactSpeed': 100., 'positions': [(0., 0.), (0., -D)], 'rear': (0., 0.), 'quantile': 0.95,
+        'time': [0., 1., 2.], 'momentum': [3., 2., 2.], 'window': 0.5, 'name': '4340', 'label': 'x', 'yieldModel': 'perfect', 'rate': 1., 'temperature': 300., 'triaxiality': 0.3,
+        'volumeRule': 'affine', 'stepFactor': 0.4, 'length': 5 * D, 'height': 3 * D, 'upper': packing, 'lower': packing, 'flyer': '4340', 'target': '4340', 'flyerThickness': 3 * D,
+        'targetThickness': 3 * D, 'speed': 50., 'lateral': 'fixed', 'diameter': 3 * D, 'friction': 0.1, 'engineOptions': None, 'start': 0., 'end': 10 * D, 'first': D, 'growth': 1.1, 'largest': 3 * D,
+        'thickness': 3 * D, 'automataWidth': 8 * D, 'plateWidth': 20 * D, 'mode': 'coupled', 'ends': 'fixed', 'scene': None, 'dtFactor': 0.4, 'rodLength': 4 * D, 'rodDiameter': 3 * D, 'rod': 'WHA_JC',
+        'plate': '4340', 'fractureStrain': 1., 'spallStrength': (3e9, 3e9), 'strengthSpread': 0.05, 'eos': 'shockAdiabat', 'viscosity': 1., 'seed': 1, 's': penetrationScene, 'part': 'rod',
+        'measure.rodMeasure.velocity': [(0., -90.), (0., -80.)], 'measure.speedAlong.velocity': [(0., -90.), (0., -80.)], 'packings.cellGeometry.name': 'hexagonal',
+        'packings.create.name': 'hexagonal', 'scenes.tiedPlate.largest': 3., 'materials.Material.flowStress.plasticStrain': 0.1,
+        'materials.Material.johnsonCookFractureStrain.triaxiality': 0.3, 'measure.momentumSettled.tolerance': 1e-3, 'outlines.Polygon.classify.radius': D
+}
+
+
+def argumentsOf(where, function=None):
+	"""Right arguments of a function as a dict; those that have a default and no entry in GOOD are left to it."""
+	if function is None: function = getattr(importlib.import_module('yade_mca.' + where.split('.')[0]), where.split('.')[1])
+	out = {}
+	for p in inspect.signature(function).parameters.values():
+		if p.name in ('self', 'cls') or p.kind in (p.VAR_KEYWORD, p.VAR_POSITIONAL): continue
+		value = GOOD.get('%s.%s' % (where, p.name), GOOD.get(p.name, p.default if p.default is not p.empty else 1.))
+		out[p.name] = value() if inspect.isfunction(value) else value
+	return out
+
+
+def kindsOf(value, name):
+	"""Bad values instead of this right one."""
+	if isinstance(value, bool): return {}  # Python counts the truth of anything
+	if isinstance(value, int): return values.INT
+	if isinstance(value, float): return values.FLOAT
+	if name in ('material', 'rod', 'plate', 'flyer', 'target') and isinstance(value, str): return {**values.TEXT, **values.objects(None)}
+	if isinstance(value, str): return values.TEXT
+	if isinstance(value, tuple) and value and all(isinstance(v, float) for v in value): return values.vector(len(value))
+	if isinstance(value, (list, tuple)) or value is None: return values.ANY
+	return values.objects(None)
+
+
+def targets(module):
+	"""(name within the module, function of a ready object or None, callable) of all that scripts may call."""
+	m = importlib.import_module('yade_mca.' + module)
+	for name, thing in vars(m).items():
+		if name.startswith('_') or getattr(thing, '__module__', None) != m.__name__ or name in RESULTS: continue
+		if inspect.isfunction(thing): yield name, None, thing
+		elif inspect.isclass(thing) and not issubclass(thing, BaseException):
+			if not dataclasses.is_dataclass(thing): yield name, None, thing
+			for method, f in vars(thing).items():
+				if inspect.isfunction(f) and not method.startswith('_'): yield '%s.%s' % (name, method), ready(module, name, thing), f
+
+
+def ready(module, name, cls):
+	made = {'Packing': packing, 'Material': record}
+	return made.get(name) or (lambda: cls(**argumentsOf('%s.%s' % (module, name), cls)))
+
+
+def after(module, name):
+	"""What a script does next with what it has got."""
+	from yade import O
+	from yade.wrapper import McaEngine
+	if module == 'packings' and name == 'addBodies': O.engines = [McaEngine()]
+	if len(O.bodies) or any(type(e).__name__ == 'McaGridEngine' for e in O.engines): O.step()
+
+
+def call(module, name, owner, function, argument, value):
+	import every_call
+	import every_call_table as table
+
+	def run():
+		from yade import O
+		O.reset()
+		where = '%s.%s' % (module, name)
+		given = argumentsOf(where, function)
+		made = owner() if owner else None
+		O.reset()
+		if argument is not None: given[argument] = value
+		act = lambda: function(made, **given) if owner else function(**given)
+		if argument is None:
+			try:
+				act()
+				after(module, name)
+			except Exception as e:
+				return 'broken', '%s: %s' % (type(e).__name__, e)
+			return 'accepted', ''
+		try:
+			act()
+			after(module, name)
+		except Exception as e:
+			text = '%s: %s' % (type(e).__name__, e)
+			lacks = every_call.poor(e, every_call.names('%s(%s)' % (where, argument)), where=False)
+			return ('poor', 'lacks %s: %s' % (lacks, text)) if lacks else ('refused', text)
+		return ('accepted' if table.accepted('%s(%s)' % (where, argument), run.kind, 'before') else 'silent'), ''
+
+	return run
+
+
+def everyCall(Call, study):
+	for module in MODULES:
+		for name, owner, function in targets(module):
+			where = '%s.%s' % (module, name)
+			yield Call('%s = good' % where, where, 'good', 'before', call(module, name, owner, function, None, None))
+			for argument, value in argumentsOf(where, function).items():
+				if argument in table().SELDOM.get(where, ()): continue
+				for kind, bad in kindsOf(value, argument).items():
+					run = call(module, name, owner, function, argument, bad)
+					run.kind = kind
+					yield Call('%s(%s) = %s' % (where, argument, kind), where, kind, 'before', run)
+
+
+def table():
+	import every_call_table
+	return every_call_table

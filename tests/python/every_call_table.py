@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What test_every_call.py has to be told: right arguments of methods, and values that are rightly accepted, each with its reason.
+
+An attribute or argument that is missing here gets the strictest treatment: every kind of value in every_call_values must be refused.
+"""
+#: YADE's own, of no effect on what is computed here
+NOT_OURS = {'timingDeltas', 'dispIndex', 'dispHierarchy', 'bases'}
+#: methods that are refused in the first scene, for a reason
+LATE = {'McaGridEngine.gauge': 'there is no gauge yet', 'Engine.__call__': 'half of a step by itself', 'McaSolverEngine': 'a base class'}
+#: classes whose objects go with their bodies
+OF_BODIES = ('McaMat', 'McaState', 'State', 'FrictMat', 'ElastMat', 'Material', 'NormPhys', 'NormShearPhys', 'McaPhys')
+#: moments at which the steps may be refused without any call
+MAY_FAIL = ('foreign', 'halfMade', 'noState', 'emptyScene', 'erased', 'afterReset')
+#: other words by which a message may call an attribute or argument
+ALSO_CALLED = {
+        'pos': ('position', ), 'vel': ('velocity', ), 'angVel': ('angular velocity', 'spin'), 'ori': ('orientation', ), 'frictionAngle': ('friction', ), 'ids': ('body', 'bodies'),
+        'nodes': ('node', ), 'xs': ('line', 'rising'), 'ys': ('line', 'rising'), 'i': ('node', ), 'j': ('node', ), 'number': ('gauge', ), 'what': ('view', ), 'at': ('point', 'gauge'),
+        'start': ('nodes', ), 'end': ('nodes', ), 'McaEngine.field(name)': ('field', ), 'automata': ('McaEngine', ), 'grid': ('McaGridEngine', ), 'plasticStrain': ('plastic strain', ), 'heatCapacity': ('taylorQuinney/(density heatCapacity)', )
+}
+
+# ---- right arguments
+
+BY_NAME = {
+        'block': 0, 'side': 'left', 'start': 0, 'end': -1, 'nodes': [0, 1], 'direction': (1., 0.), 'velocity': (1., 0.), 'at': (1e-3, 1e-3), 'period': 1, 'number': 0, 'n': 5, 'ids': [0, 1],
+        'normal': (1., 0.), 'name': 'vx', 'i': 1, 'j': 1, 'what': 'x', 'xs': [10e-3, 11e-3, 12e-3], 'ys': [0., 1e-3, 2e-3], 'value': 1e6, 'volumeRatio': 0.95, 'plasticStrain': 0.1, 'rate': 10.,
+        'temperature': 400., 'threads': 1
+}
+BY_TYPE = {'int': 0, 'float': 1., 'str': '', 'bool': True, 'object': 1.}
+ARGUMENTS = {
+        'McaGridEngine.addBlock': {'x': [[10e-3, 11e-3], [10e-3, 11e-3]], 'y': [[0, 0], [1e-3, 1e-3]]},
+        'McaGridEngine.prescribeNodes': {'velocity': 1.},
+        'McaGridEngine.probeLine': {'start': (0., 1e-3), 'end': (3e-3, 1e-3)},
+}
+
+
+def goodArguments(key, given):
+	"""Function of the object that makes right arguments of a method; given: [(type, name, has a default)]."""
+
+	def make(thing):
+		import every_call_scenes as scenes
+		out = {}
+		for t, name, default in given:
+			if default and name not in ('start', 'end'): continue
+			if t == 'Material': out[name] = scenes.metal()
+			elif name in ARGUMENTS.get(key, ()): out[name] = ARGUMENTS[key][name]
+			elif name in BY_NAME: out[name] = BY_NAME[name]
+			elif t.startswith('Vector'): out[name] = (0., ) * int(t[6])
+			else: out[name] = BY_TYPE.get(t, 1.)
+		return out
+
+	return make
+
+
+#: arguments of functions of the modules that are not tried
+SELDOM = {}
+
+# ---- what is rightly accepted: kinds of values, reason
+
+ALL = '*'
+ACCEPTED = {
+        # YADE's own attributes, which YADE reads
+        'Engine.label': (ALL, 'a name for the script'), 'Functor.label': (ALL, 'a name for the script'), 'Material.label': (ALL, 'a name for the script'),
+        'Engine.dead': (ALL, 'YADE leaves the engine out'), 'Engine.ompThreads': (ALL, "YADE's; not read here"), 'Engine.execTime': (ALL, 'a count of YADE'), 'Engine.execCount': (ALL, 'a count of YADE'),
+        'State.refPos': (ALL, 'for displ() only'), 'State.refOri': (ALL, 'for rot() only'), 'State.isDamped': (ALL, 'NewtonIntegrator reads it'),
+        'State.densityScaling': (ALL, 'NewtonIntegrator reads it'), 'State.angMom': (ALL, 'of aspherical bodies in space only'),
+        'State.blockedDOFs': (ALL, 'YADE takes the letters it knows'),
+        'TimeStepper.timeStepUpdateInterval': ('huge long', 'rarely'),
+        # motion
+        'State.pos': ('zero negative', 'any finite place'), 'State.vel': ('zero negative', 'any finite velocity'), 'State.angVel': ('zero negative', 'any finite spin'),
+        # McaState
+        'McaState.pressure': ('zero negative', 'tension'), 'McaState.stressZZ': ('zero negative', 'either sign'), 'McaState.plasticStrain': ('zero', 'fresh'),
+        'McaState.temperature': ('zero', 'absolute zero'), 'McaState.dissipated': ('zero', 'fresh'), 'McaState.strength': ('zero', 'drawn by the engine'),
+        'McaState.equivalentStress': (ALL, 'output'), 'McaState.links': (ALL, 'output'), 'McaState.brokenLinks': (ALL, 'output'),
+        # McaMat
+        'McaMat.hugoniotSlope': ('zero', 'linear'), 'McaMat.gruneisen': ('zero', 'no heat in the pressure'), 'McaMat.shearModulus': ('zero', 'a fluid'),
+        'McaMat.yieldStress': ('zero inf huge', 'flows at once; elastic'), 'McaMat.hardeningModulus': ('zero', 'none'), 'McaMat.rateCoefficient': ('zero', 'no rate'),
+        'McaMat.meltTemperature': ('inf huge', 'does not melt'), 'McaMat.referenceTemperature': ('zero', 'absolute zero'), 'McaMat.heatCapacity': ('zero', 'no heating'),
+        'McaMat.taylorQuinney': ('zero', 'no heating'), 'McaMat.fractureStrain': ('inf huge', 'never'), 'McaMat.spallStrength': ('inf huge', 'never'), 'McaMat.pairStrength': ('inf huge', 'never'),
+        'McaMat.fractureStress': ('inf huge', 'never'), 'McaMat.strengthSpread': ('zero', 'all alike'), 'McaMat.viscosityLinear': ('zero', 'none'), 'McaMat.viscosityQuadratic': ('zero', 'none'),
+        'FrictMat.frictionAngle': ('zero', 'smooth'), 'McaMat.flowStress(plasticStrain)': ('zero', 'fresh'),
+        # McaPhys
+        'NormPhys.normalForce': (ALL, 'output'), 'NormShearPhys.shearForce': ('zero negative', 'the friction of the wall so far'),
+        # engines
+        'McaEngine.volumeFilter': ('zero', 'off'), 'McaEngine.writePeriod': ('zero huge', 'at the end only'), 'McaEngine.seed': ('zero negative -2 huge -huge', 'any whole number'),
+        'McaEngine.gravity': ('zero negative', 'any finite vector'), 'McaDensity.volumeFilter': ('zero', 'off'), 'McaDensity.seed': ('zero negative -2 huge -huge', 'any whole number'),
+        'McaTimeStepper.growth': ('inf huge', 'no limit of growth'), 'McaTimeStepper.largest': ('inf huge', 'no bound'),
+        'McaGridCoupler.automata': ('none', 'the only one'), 'McaGridCoupler.grid': ('none', 'the only one'), 'McaGridCoupler.block': ('zero', 'the first'), 'McaGridCoupler.start': ('zero', 'the first'),
+        'McaGridCoupler.end': ('negative', 'the last'), 'McaGridCoupler.ids': ('empty', 'all on the line'),
+        # McaGridEngine
+        'McaGridEngine.addRectangle(name)': (ALL, 'any name'), 'McaGridEngine.addBlock(name)': (ALL, 'any name'), 'McaGridEngine.addRectangle(hourglass)': ('zero', 'off'),
+        'McaGridEngine.addBlock(hourglass)': ('zero', 'off'),
+        **{'McaGridEngine.%s(block)' % m: ('zero', 'the first') for m in ('openInteriorNode', 'openNode', 'sideNodes', 'fix', 'symmetry', 'prescribe', 'traction', 'pressure', 'viscous', 'setVelocity', 'view')},
+        **{'McaGridEngine.%s(start)' % m: ('zero', 'the first') for m in ('sideNodes', 'fix', 'prescribe', 'traction', 'pressure', 'viscous')},
+        **{'McaGridEngine.%s(end)' % m: ('negative', 'the last') for m in ('sideNodes', 'fix', 'prescribe', 'traction', 'pressure', 'viscous')},
+        **{'McaGridEngine.%s(%s)' % (m, x): ('zero negative half', 'any finite number') for m in ('prescribe', 'traction', 'force') for x in 'xy'},
+        **{'McaGridEngine.%s(nodes)' % m: ('zero', 'the first') for m in ('fixNodes', 'prescribeNodes', 'force')},
+        'McaGridEngine.prescribeNodes(velocity)': ('zero negative half', 'any finite number'), 'McaGridEngine.pressure(value)': ('zero negative half', 'any finite number'),
+        'McaGridEngine.gauge(number)': ('zero', 'the first'), 'McaGridEngine.addGauge(at)': ('zero', 'a corner'),
+        'McaGridEngine.probeLine(start)': ('zero negative', 'points outside are left out'), 'McaGridEngine.probeLine(end)': ('zero negative', 'points outside are left out'),
+        'McaGridEngine.openNode(i)': ('zero', 'the first'), 'McaGridEngine.openNode(j)': ('zero', 'the first'), 'McaEngine.setViscous(normal)': ('negative', 'to the left'),
+        **{'McaGridEngine.%s(end)' % m: ('negative zero', 'the last; the first') for m in ('sideNodes', 'fix', 'prescribe')},
+        'McaEngine.setViscous(ids)': ('empty', 'nobody'),
+}
+for m in 'prescribe(x)', 'prescribe(y)': ACCEPTED['McaGridEngine.' + m] = ('zero negative half none', 'any finite number; None: free')
+
+
+def accepted(key, kind, moment):
+	kinds = ACCEPTED.get(key, ('', ))[0]
+	if '(' not in key and moment in ('stale', 'afterReset', 'emptyScene') and (moment == 'stale' or key.split('.')[0] in OF_BODIES):
+		return True  # of an object that no scene holds any more: nothing reads it
+	return kinds == ALL or kind in kinds.split()
