@@ -39,7 +39,7 @@ def callSetup(tree, *before):
 
 
 def ended(process):
-	output = process.communicate(timeout=120)[0]
+	output = process.communicate(timeout=600)[0]
 	return process.returncode, output
 
 
@@ -105,7 +105,7 @@ def environment(**changes):
 @pytest.mark.parametrize('command', [(str(ROOT / 'pyscripts/yade-mca'), '-n', '-x'), ('/usr/bin/python3', )], ids=['yade-mca', 'python'])
 def test_startsWithoutHome(command, home, tmp_path):
 	(tmp_path / 's.py').write_text(SCRIPT)
-	done = subprocess.run([*command, 's.py'], cwd=tmp_path, env=environment(HOME=home), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=120)
+	done = subprocess.run([*command, 's.py'], cwd=tmp_path, env=environment(HOME=home), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=600)
 	assert done.returncode == 0 and 'STARTED x86-64' in done.stdout and '/' in done.stdout.split()[-1], done.stdout
 	assert os.listdir(tmp_path) == ['s.py']
 
@@ -113,12 +113,12 @@ def test_startsWithoutHome(command, home, tmp_path):
 def test_batchStartsWithoutHome(tmp_path):
 	(tmp_path / 's.py').write_text(SCRIPT)
 	(tmp_path / 't.table').write_text('x\n1\n')
-	done = subprocess.run([str(ROOT / 'pyscripts/yade-mca-batch'), '-j1', 't.table', 's.py'], cwd=tmp_path, env=environment(HOME=None), stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120)
+	done = subprocess.run([str(ROOT / 'pyscripts/yade-mca-batch'), '-j1', 't.table', 's.py'], cwd=tmp_path, env=environment(HOME=None), stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=600)
 	assert done.returncode == 0 and 'STARTED x86-64' in ''.join(p.read_text() for p in tmp_path.glob('*.log')), done.stderr
 
 
 def test_taskWithoutHome():
-	done = subprocess.run([*TASK, 'info'], env=environment(HOME=None), stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120)
+	done = subprocess.run([*TASK, 'info'], env=environment(HOME=None), stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=600)
 	assert done.returncode == 0 and 'guardChecks' in done.stdout, done.stderr
 
 
@@ -127,11 +127,11 @@ def test_nobodyReads():
 	process = subprocess.Popen([*TASK, 'info'], env=environment(), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 	process.stdout.close()
 	error = process.stderr.read()
-	assert process.wait(timeout=120) == 0 and not error, error
+	assert process.wait(timeout=600) == 0 and not error, error
 
 
 def test_aBrokenPipeOfSomethingElseIsAnError():
 	"""Only the reader of standard output may end a task silently."""
 	code = "import sys, yade_mca.tasks.info as t\ndef run(*a): raise BrokenPipeError('a child')\nt.run = run\nfrom yade_mca.tasks.cli import main\nsys.exit(main(['info']))\n"
-	done = subprocess.run([sys.executable, '-c', code], env=environment(), stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120)
+	done = subprocess.run([sys.executable, '-c', code], env=environment(), stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=600)
 	assert done.returncode == 1 and 'a child' in done.stderr, done.stderr
