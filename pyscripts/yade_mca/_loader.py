@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Finds the compiled part of the plugin, checks that it is whole and fits this YADE, and loads it. Each refusal is an ImportError with a remedy."""
 import atexit
+import contextlib
 import importlib.machinery
 import importlib.util
+import io
 import json
 import os
 import shutil
@@ -95,13 +97,17 @@ def checkYadeLibraries(manifest):
 def importYade(manifest):
 	folder, first = os.path.join(manifest['yadeLibDir'], 'py'), 'yade' not in sys.modules
 	if first and folder not in sys.path: sys.path.append(folder)
+	said = io.StringIO()
 	try:
-		import yade.config
-		import yade.system
-		import yade.wrapper
+		with contextlib.redirect_stdout(said):  # YADE greets each import with a line, where a task's output, or nobody, is read
+			import yade.config
+			import yade.system
+			import yade.wrapper
 	except ImportError as e:
 		if sys.prefix != '/usr': refuse('YADE cannot be imported into %s (%s)' % (sys.executable, e), "use YADE's interpreter, /usr/bin/python3, or start yade or yade-mca")
 		refuse('YADE cannot be imported (%s)' % e, REINSTALL_YADE)
+	rest = [line for line in said.getvalue().splitlines() if not line.startswith('Using python version')]
+	if rest: print('\n'.join(rest))
 	if first: atexit.register(removeTemporaryFolder, os.path.dirname(yade.wrapper.Omega().tmpFilename()), os.getpid())
 
 
