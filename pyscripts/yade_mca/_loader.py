@@ -114,14 +114,17 @@ def importYade(manifest):
 	setHome()
 	folder, first = os.path.join(manifest['yadeLibDir'], 'py'), 'yade' not in sys.modules
 	if first and folder not in sys.path: sys.path.append(folder)
+	said = io.StringIO()
 	try:
-		with contextlib.redirect_stdout(io.StringIO()):  # YADE greets; what is printed is the business of the script or task
+		with contextlib.redirect_stdout(said):  # YADE greets each import with a line, where a task's output, or nobody, is read
 			import yade.config
 			import yade.system
 			import yade.wrapper
 	except ImportError as e:
 		if sys.prefix != '/usr': refuse('YADE cannot be imported into %s (%s)' % (sys.executable, e), "use YADE's interpreter, /usr/bin/python3, or start yade or yade-mca")
 		refuse('YADE cannot be imported (%s)' % e, installYade(manifest, '--reinstall '))
+	rest = [line for line in said.getvalue().splitlines() if not line.startswith('Using python version')]
+	if rest: print('\n'.join(rest))
 	if first: atexit.register(removeTemporaryFolder, os.path.dirname(yade.wrapper.Omega().tmpFilename()), os.getpid())
 
 

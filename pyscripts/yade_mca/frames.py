@@ -54,7 +54,7 @@ def shade(strain, first):
 
 
 class Painter:
-	"""Paints automata and cells of one view. bounds (x0, y0, x1, y1) [m] of the scene; they are turned by a right angle: -y goes to the right, x up."""
+	"""Paints automata and cells of one view. bounds (x0, y0, x1, y1) [m] of the scene; they are turned by a right angle: -y goes to the right, x up. width: from 560 pixels on."""
 
 	HEAD, FOOT = 34, 44  #: pixels above and below the view
 
@@ -147,10 +147,11 @@ class Painter:
 			still[top:top + 14, x:x + bar] = self.table[COVER, shade(np.linspace(0, STRAIN, bar), first)]
 			x += bar + 22
 		words.append((x - 8, 12, 13, 'plastic strain 0 to %g' % STRAIN))
-		length = 0.02 * self.scale
-		start = int(width - 14 - length)
-		still[top + 5:top + 8, start:start + round(length)] = INK + COVER - 1
-		words.append((start - 8 - self.fonts[13].getbbox('20 mm')[2], 12, 13, '20 mm'))
+		longest = 120 * width / WIDTH / self.scale  # of the scale: a round length of at most some 120 pixels [m]
+		length = max(k * 10.**e for e in range(-9, 3) for k in (1, 2, 5) if k * 10.**e <= longest)
+		start, name = int(width - 14 - length * self.scale), '%g mm' % (1e3 * length)
+		still[top + 5:top + 8, start:start + round(length * self.scale)] = INK + COVER - 1
+		words.append((start - 8 - self.fonts[13].getbbox(name)[2], 12, 13, name))
 		ink = self._ink(width, self.FOOT, words)
 		still[-self.FOOT:] = np.where(ink > 0, ink, still[-self.FOOT:])
 		return still

@@ -27,6 +27,9 @@ COLUMNS = ('time', 'step', 'dt', 'lengthLoss', 'lengthLossUnbroken', 'lengthLoss
            'brokenLinks', 'contacts', 'awake')
 
 
+ENGINES = ('McaTimeStepper', 'McaEngine', 'McaGridEngine', 'McaGridCoupler')  #: of scenes.penetration()
+
+
 class ImpactError(RuntimeError):
 	"""A run that cannot go on; the message says why."""
 
@@ -184,9 +187,16 @@ class Impact:
 
 	@classmethod
 	def load(cls, path, until=None):
-		"""(Impact, extra) of a checkpoint; O becomes the saved scene. until: another end [s]. Raises checkpoint.CheckpointError."""
+		"""(Impact, extra) of a checkpoint; O becomes the saved scene. until: another end [s].
+
+		Raises checkpoint.CheckpointError, also where the scene holds engines that scenes.penetration() does not make: a PyRunner would run what it says. O is empty then.
+		"""
 		facts, arrays = checkpoint.read(path)
 		engines = omega().engines
+		others = sorted({type(e).__name__ for e in engines} - set(ENGINES))
+		if others:
+			omega().reset()
+			raise checkpoint.CheckpointError("checkpoint '%s' holds engines that a penetration run does not have: %s; load it with yade_mca.checkpoint.read() if you trust where it comes from" % (path, ', '.join(others)))
 		find = lambda name: [e for e in engines if type(e).__name__ == name]
 		s = scenes.Scene(automata=find('McaEngine')[0], grid=(find('McaGridEngine') or [None])[0], couplers=find('McaGridCoupler'),
 		                 ids={k[4:]: v for k, v in arrays.items() if k.startswith('ids ')}, blocks=facts['scene']['blocks'], facts=facts['scene']['facts'])

@@ -5,6 +5,7 @@ Binary, appended, compressed XML files of VTK; each appears whole or not at all.
 {name: array}, one entry per automaton, cell or node, scalar (N,) or with components (N, k); two components become (x, y, 0). Put the
 unit into the name, as in 'pressure [Pa]'.
 """
+import errno
 import os
 import tempfile
 from pathlib import Path
@@ -75,7 +76,7 @@ def _write(writer, dataset, path, time):
 		writer.EncodeAppendedDataOff()
 		ok = writer.Write()
 		if not ok or writer.GetErrorCode():
-			raise OSError("cannot write '%s': VTK error %d (is the disk full?)" % (path, writer.GetErrorCode()))
+			raise OSError(errno.EIO, 'VTK error %d (is the disk full?)' % writer.GetErrorCode(), path)
 		mask = os.umask(0)
 		os.umask(mask)
 		os.chmod(temporary, 0o666 & ~mask)

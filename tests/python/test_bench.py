@@ -130,6 +130,9 @@ def test_ratios():
 	bench_results.add(report, records)
 	cases = {c.name: c for c in report.cases}
 	assert cases['law/N100/plastic/1threads/CpmMatOverMcaEngine'].passed and cases['law/N100/plastic/1threads/CpmMatOverMcaEngine'].limit == 12
+	for c in report.cases:  # an aim that is not asserted is not printed as a reference
+		assert c.limit is not None or (c.reference is None and not c.asserted), c.name
+	assert cases['law/N100/plastic/1threads/McaEngine'].value == records[[r['name'] for r in records].index('law/McaEngine/N100')]['automataNs']
 	slow = Report('t')
 	bench_results.add(slow, [dict(r, automataNs=500.) if r['solver'] == 'CpmMat' else r for r in records])
 	assert [c.name for c in slow.failed] == ['law/N100/plastic/1threads/CpmMatOverMcaEngine']

@@ -53,7 +53,7 @@ def test_aRunReportsAndWritesEverything(tmp_path, capsys, mode):
 	assert 0.02 < c[n + 'lengthLoss']['value'] < 0.4 and 0 < c[n + 'velocityLossTail']['value'] < c[n + 'velocityLossAll']['value'] < 0.3
 	assert c[n + 'energyError']['limit'] == 0.01 and c[n + 'energyBooked']['limit'] == 1e-10 and c[n + 'momentumBooked']['limit'] == 1e-12
 	names = {p.name for p in out.iterdir()}
-	assert {'pattern_00us.png', 'pattern_end.png', 'history.png', 'penetration.pvd', 'penetration.checkpoint', 'summary.json', 'paraview'} <= names
+	assert {'pattern_00us.png', 'pattern_end.png', 'history.png', 'penetration.pvd', 'penetration.checkpoint', 'penetration.gif', 'penetration.html', 'summary.json', 'paraview'} <= names
 	vtk = [p for p in (out / 'paraview').iterdir()]
 	assert all(p.stat().st_size > 1000 and not p.name.startswith('.') for p in vtk)
 	text = (out / 'penetration.pvd').read_text()
@@ -150,14 +150,16 @@ def test_killedAndRestartedEndsIdentically(tmp_path, mode, delay):
 	p.send_signal(signal.SIGKILL)
 	p.wait()
 	assert not (parts / 'summary.json').exists(), 'the run was over before it was killed'
-	for f in (parts / '.pattern_end.png.abc', parts / '.penetration.checkpoint.abc', parts / 'paraview' / '.automata_000000.vtp.abc.part'):
+	for f in (parts / '.pattern_end.png.abc', parts / '.penetration.html.abc', parts / '.penetration.gif.abc', parts / 'frames' / '.frame_0000000.png', parts / '.penetration.checkpoint.abc', parts / 'paraview' / '.automata_000000.vtp.abc.part'):
 		f.write_text('unfinished')
 	p = process('--restart', str(parts / 'penetration.checkpoint'), '--until', '12')
 	assert p.wait(120) == 0, p.communicate()
 	assert record(parts / 'summary.json') == record(whole / 'summary.json')
 	values = lambda f: {k: c['value'] for k, c in cases(f).items() if not k.endswith('wall')}
 	assert values(parts / 'summary.json') == values(whole / 'summary.json')
-	for f in ('pattern_00us.png', 'pattern_end.png', 'history.png'):
+	frames = sorted(f.name for f in (whole / 'frames').iterdir())
+	assert sorted(f.name for f in (parts / 'frames').iterdir()) == frames and len(frames) > 5
+	for f in ('pattern_00us.png', 'pattern_end.png', 'history.png', 'penetration.gif', *('frames/' + f for f in frames)):
 		assert (parts / f).read_bytes() == (whole / f).read_bytes(), f
 	assert (parts / 'penetration.pvd').read_text() == (whole / 'penetration.pvd').read_text()
 	assert not [f for f in os.listdir(parts) + os.listdir(parts / 'paraview') if f.startswith('.')]
@@ -223,6 +225,25 @@ def test_damagedCheckpointsAreRefused(plugin, tmp_path, capsys, damage):
 			assert shown.err.count('\n') == 1 and '--restart' in shown.err
 	finally:
 		if damage == 'version': plugin.version = old
+
+
+@pytest.mark.parametrize('name', ['PyRunner', 'VTKRecorder'])
+def test_aCheckpointWithOtherEnginesIsRefused(plugin, tmp_path, capsys, name):
+	import yade
+	from yade import O
+
+	from yade_mca import impact, scenes
+	s = scenes.penetration(thickness=16e-3, spacing=4e-3)
+	run = impact.Impact(s, until=12e-6)
+	run.advance()
+	target = tmp_path / 'ran'
+	if name == 'PyRunner': other = yade.wrapper.PyRunner(command="open(%r, 'w')" % str(target), iterPeriod=1)
+	else: other = yade.wrapper.VTKRecorder(iterPeriod=1)
+	O.engines = [*O.engines, other]
+	run.save(str(tmp_path / 'c'), dict(options={'thickness': 16., 'spacing': 4., 'mode': 'coupled'}))
+	assert cli.main(['penetration', '--restart', str(tmp_path / 'c'), '--out', str(tmp_path)]) == 2
+	err = capsys.readouterr().err
+	assert err.count('\n') == 1 and type(other).__name__ in err and not target.exists()
 
 
 @pytest.mark.parametrize('argv, word', [

@@ -85,6 +85,20 @@ def test_report_decides_by_error_limit_and_finiteness():
 	assert json.loads(text)['cases'][5]['value'] is None
 
 
+def test_what_is_only_measured_does_not_read_ok():
+	out = io.StringIO()
+	r = Report('t', out)
+	r.add('measured', 5.)
+	r.add('compared', 5., 4.)
+	r.add('held', 5., 4., limit=1.)
+	r.add('above', 5., passed=5. > 4.)
+	r.add('nan', math.nan)
+	r.show()
+	last = {line.split()[0]: line.split()[-1] for line in out.getvalue().splitlines()}
+	assert (last['measured'], last['compared'], last['held'], last['above'], last['nan']) == ('-', '-', 'ok', 'ok', 'FAILED')
+	assert 't: 2 passed, 1 failed, 2 only measured' in out.getvalue()
+
+
 def test_numbers_are_not_rounded_in_the_file(tmp_path):
 	r, x = Report('t'), 0.1 + 0.2
 	r.add('x', x)

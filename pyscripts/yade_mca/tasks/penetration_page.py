@@ -39,6 +39,8 @@ COLOURS = 128  #: of an embedded picture
 
 def embedded(path, colours=None):
 	"""A picture as data URI; with `colours` as a PNG of so many. None where the file cannot be read."""
+	if not Path(path).is_file():  # a device might never end
+		return None
 	try:
 		data = Path(path).read_bytes()
 		if colours:

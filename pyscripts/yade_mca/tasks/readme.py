@@ -28,7 +28,7 @@ JOBS = {
         'verify-grid': (['verify', 'grid', '--quick'], {}),
         'verify-interface': (['verify', 'interface', '--quick'], {}),
         'check': (['check'], {}),
-        'penetration': (['penetration', '--spacing', '1', '--until', '42'], {r'pattern_end\.png|pattern_42us\.png': 'penetration.png'}),
+        'penetration': (['penetration', '--spacing', '1'], {r'penetration\.gif': 'penetration.gif'}),
 }
 #: rows of the verification table: result, pattern of the cases, what they are
 ROWS = [
@@ -158,7 +158,7 @@ def picture(name, text):
 SECTIONS = {
         'verification': verification,
         'penetration': penetration,
-        'picture': picture('penetration.png', 'A tungsten rod in a steel plate: automata in the middle, grid beside'),
+        'picture': picture('penetration.gif', 'A tungsten rod goes through a steel plate, from left to right: automata in the middle, grid beside, coloured by plastic strain'),
         'front': picture('bench-front.png', 'Run time against error, per case'),
 }
 

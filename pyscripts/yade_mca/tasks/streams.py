@@ -35,7 +35,7 @@ def install():
 		except (AttributeError, OSError, ValueError):  # closed, or not a file
 			continue
 		raw = Lasting(descriptor)
-		new = io.TextIOWrapper(io.BufferedWriter(raw), encoding=old.encoding, errors=old.errors, line_buffering=name == 'stderr' or old.line_buffering)
+		new = io.TextIOWrapper(io.BufferedWriter(raw), encoding=old.encoding, errors=old.errors, line_buffering=name == 'stderr' or old.line_buffering or old.write_through)
 		setattr(sys, name, new)
 
 

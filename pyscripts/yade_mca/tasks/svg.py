@@ -13,7 +13,7 @@ def ticks(low, high, count=5):
 	"""Round numbers from `low` to `high`, about `count` of them."""
 	raw = (high - low) / count
 	size = 10.**math.floor(math.log10(raw))
-	step = next(size * k for k in (1, 2, 2.5, 5, 10) if size * k >= raw * 0.999)
+	step = next(size * k for k in (1, 2, 2.5, 5, 10) if size * k >= 0.75 * raw)
 	first = math.ceil(low / step - 1e-9)
 	return [k * step for k in range(first, math.floor(high / step + 1e-9) + 1)]
 
