@@ -14,11 +14,14 @@ a record is rho0 c0^2, the slope of its shock adiabat at rest; a static value fr
 import csv
 import difflib
 import math
+import reprlib
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
+
+from ._arguments import LARGEST, numbersOfAnyShape
 
 __all__ = ['Material', 'MaterialError', 'names', 'get', 'mcaMat', 'MCAMAT_ATTRIBUTES', 'YIELD_MODELS', 'EOS_MODELS']
 
@@ -130,9 +133,11 @@ class Material:
 	def flowStress(self, plasticStrain, rate=None, temperature=None):
 		"""Yield stress [Pa] of the record's yieldModel; plasticStrain [-], rate [1/s] and temperature [K] may be arrays.
 
-		Rate and temperature count in 'johnsonCook' only; None means the reference rate and temperature.
+		Rate and temperature count in 'johnsonCook' only; None means the reference rate and temperature. Raises MaterialError for negative or not finite ones.
 		"""
-		e = np.asarray(plasticStrain, float)
+		e = numbersOfAnyShape('plasticStrain', plasticStrain, MaterialError, 0)
+		rate = None if rate is None else numbersOfAnyShape('rate', rate, MaterialError, 0)
+		temperature = None if temperature is None else numbersOfAnyShape('temperature', temperature, MaterialError, 0)
 		if self.yieldModel == 'elastic':
 			return np.full_like(e, math.inf)
 		if self.yieldModel == 'perfect':
@@ -141,9 +146,9 @@ class Material:
 			return self.yieldStress + self.hardeningModulus * e
 		y = self.yieldStress + self.hardeningModulus * e**self.hardeningExponent
 		if rate is not None:  # never below the static curve
-			y = y * (1 + self.rateCoefficient * np.log(np.maximum(np.asarray(rate, float) / self.referenceRate, 1.0)))
+			y = y * (1 + self.rateCoefficient * np.log(np.maximum(rate / self.referenceRate, 1.0)))
 		if temperature is not None:
-			t = (np.asarray(temperature, float) - self.referenceTemperature) / (self.meltTemperature - self.referenceTemperature)
+			t = (temperature - self.referenceTemperature) / (self.meltTemperature - self.referenceTemperature)
 			y = y * (1 - np.clip(t, 0, 1)**self.thermalSoftening)
 		return y
 
@@ -155,6 +160,8 @@ class Material:
 		if self.johnsonCookDamage is None:
 			raise MaterialError("material '%s' has no Johnson-Cook fracture constants D1 ... D5" % self.name)
 		d1, d2, d3, d4, d5 = self.johnsonCookDamage
+		triaxiality, rate = numbersOfAnyShape('triaxiality', triaxiality, MaterialError), numbersOfAnyShape('rate', rate, MaterialError, 0)
+		temperature = numbersOfAnyShape('temperature', temperature, MaterialError, 0)
 		t = np.clip((temperature - self.referenceTemperature) / (self.meltTemperature - self.referenceTemperature), 0, 1)
 		return (d1 + d2 * np.exp(d3 * triaxiality)) * (1 + d4 * np.log(np.maximum(rate / self.referenceRate, 1.0))) * (1 + d5 * t)
 
@@ -232,14 +239,14 @@ def get(name, yieldModel=None, **overrides):
 	if isinstance(name, Material):
 		m = name
 	else:
-		if name not in _library():
+		if not isinstance(name, str) or name not in _library():
 			near = difflib.get_close_matches(str(name), names(), 3, 0.4)
 			raise MaterialError("unknown material '%s'%s; the library holds: %s" %
 			                    (name, " (did you mean '%s'?)" % "' or '".join(near) if near else '', ', '.join(names())))
 		m = _library()[name]
 	if yieldModel is not None and yieldModel != m.yieldModel:
 		if yieldModel not in YIELD_MODELS:
-			raise MaterialError("yieldModel '%s' is not one of %s" % (yieldModel, ', '.join(YIELD_MODELS)))
+			raise MaterialError("yieldModel '%s' must be one of %s" % (yieldModel, ', '.join(YIELD_MODELS)))
 		given = 'yieldStress' in overrides and not (m.johnsonCook or m.steinbergGuinan)  # the caller brings the strength along
 		m = replace(m, yieldModel=yieldModel) if given else _withYield(m, yieldModel)
 	known = {f.name for f in fields(Material)}
@@ -255,19 +262,32 @@ def get(name, yieldModel=None, **overrides):
 _POSITIVE = ('density', 'bulkSoundSpeed', 'yieldStress', 'referenceRate', 'meltTemperature', 'fractureStrain', 'spallStrength',
              'pairStrength', 'fractureStress')
 _NOT_NEGATIVE = ('hugoniotSlope', 'gruneisen', 'hardeningModulus', 'hardeningExponent', 'rateCoefficient', 'thermalSoftening', 'heatCapacity',
-                 'taylorQuinney', 'strengthSpread', 'frictionAngle', 'viscosityLinear', 'viscosityQuadratic', 'shearModulus')
+                 'taylorQuinney', 'strengthSpread', 'frictionAngle', 'referenceTemperature', 'viscosityLinear', 'viscosityQuadratic', 'shearModulus')
+
+
+#: may be infinite: no plasticity, no fracture, no melting
+_INFINITE = ('yieldStress', 'meltTemperature', 'fractureStrain', 'spallStrength', 'pairStrength', 'fractureStress')
 
 
 def _check(m):
-	for keys, bad, rule in ((_POSITIVE, lambda v: not v > 0, 'above 0'), (_NOT_NEGATIVE, lambda v: not v >= 0, '0 or above')):
-		for k in keys:
-			if bad(getattr(m, k)) and not (k == 'shearModulus' and math.isnan(m.shearModulus)):  # an equation of state alone is a record too
-				raise MaterialError("material '%s': %s = %r must be %s" % (m.name, k, getattr(m, k), rule))
+	def refuse(k, rule):
+		raise MaterialError("material '%s': %s = %s must be %s" % (m.name, k, reprlib.repr(getattr(m, k)), rule))
+
+	for k in (f.name for f in fields(Material) if f.type is float or f.type == 'float'):
+		v = getattr(m, k)
+		if not isinstance(v, (int, float, np.integer, np.floating)) or isinstance(v, bool) or isinstance(v, int) and abs(v) > LARGEST: refuse(k, 'a number')
+		if abs(v) > LARGEST and not (k in _INFINITE and v > 0): refuse(k, 'finite')
+	for k in _POSITIVE:
+		if not getattr(m, k) > 0: refuse(k, 'above 0')
+	for k in _NOT_NEGATIVE:  # an equation of state alone is a record too: no shear modulus
+		if not getattr(m, k) >= 0 and not (k == 'shearModulus' and math.isnan(m.shearModulus)): refuse(k, '0 or above')
+	if m.frictionAngle >= 0.5 * math.pi: refuse('frictionAngle', 'from 0 to below pi/2')
+	if m.taylorQuinney > 1: refuse('taylorQuinney', 'from 0 to 1')
+	if m.strengthSpread >= 0.5: refuse('strengthSpread', 'from 0 to below 0.5')
 	for k, allowed in (('eos', EOS_MODELS), ('yieldModel', YIELD_MODELS), ('strengthDistribution', DISTRIBUTIONS)):
 		if getattr(m, k) not in allowed:
-			raise MaterialError("material '%s': %s '%s' is not one of %s" % (m.name, k, getattr(m, k), ', '.join(allowed)))
-	if not m.strengthRatio >= 1:
-		raise MaterialError("material '%s': strengthRatio = %r must be 1 or above (compression strength / tensile strength)" % (m.name, m.strengthRatio))
+			refuse(k, 'one of ' + ', '.join(allowed))
+	if not m.strengthRatio >= 1: refuse('strengthRatio', '1 or above (compression strength / tensile strength)')
 
 
 def mcaMat(name, label=None, **overrides):

@@ -23,6 +23,8 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
+from ._arguments import array, number
+
 __all__ = ['RodMeasure', 'geometricLength', 'momentumSettled', 'rearClearance', 'rodMeasure', 'speedAlong']
 
 TAIL_STRAIN = 0.1  #: material with less plastic strain is the undeformed tail [-]
@@ -48,13 +50,15 @@ class RodMeasure:
 
 
 def speedAlong(velocity, direction):
-	"""Component (N,) of velocity (N, 2 or 3) [m/s] along `direction` (2 or 3 numbers, any length above 0)."""
-	n = np.zeros(np.shape(velocity)[1])
-	n[:len(direction)] = direction
+	"""Component (N,) of velocity (N, 2 or 3) [m/s] along `direction` (2 or 3 numbers, any length above 0). Raises ValueError."""
+	velocity = array('velocity', velocity, ValueError, ((None, 2), (None, 3)), empty=True)
+	given = array('direction', direction, ValueError, ((2, ), (3, )))
+	n = np.zeros(3)
+	n[:len(given)] = given
 	length = math.sqrt(float(n @ n))
-	if not length > 0:
-		raise ValueError('direction must not be zero')
-	return np.asarray(velocity, float) @ (n / length)
+	if not 0 < length < math.inf or n[velocity.shape[1]:].any():
+		raise ValueError('direction must not be zero, and in the plane for velocities in the plane; got %r' % (direction, ))
+	return velocity @ (n[:velocity.shape[1]] / length)
 
 
 def rodMeasure(mass, velocity, plasticStrain, impactSpeed, direction=(0., -1.)):
@@ -63,14 +67,13 @@ def rodMeasure(mass, velocity, plasticStrain, impactSpeed, direction=(0., -1.)):
 	mass (N,) [kg/m], velocity (N, 2 or 3) [m/s], plasticStrain (N,) [-] of all rod material (automata, cells or particles); impactSpeed U0 [m/s];
 	direction: of the impact. Raises ValueError for empty, mismatched or non-finite input.
 	"""
-	m, e = np.asarray(mass, float), np.asarray(plasticStrain, float)
-	if m.ndim != 1 or len(m) == 0 or e.shape != m.shape or len(velocity) != len(m):
-		raise ValueError('mass, velocity and plasticStrain must have one entry per piece of rod; got %s, %s, %s' % (m.shape, np.shape(velocity), e.shape))
+	m, e = array('mass', mass, ValueError, (None, )), array('plasticStrain', plasticStrain, ValueError, (None, ))
 	v = speedAlong(velocity, direction)
-	if not (np.isfinite(m).all() and np.isfinite(v).all() and np.isfinite(e).all() and m.sum() > 0):
-		raise ValueError('mass, velocity and plasticStrain must be finite and the mass above 0')
-	if not impactSpeed > 0:
-		raise ValueError('impactSpeed must be above 0; got %r' % impactSpeed)
+	if not len(m) == len(e) == len(v):
+		raise ValueError('mass, velocity and plasticStrain must have one entry per piece of rod; got %d, %d, %d' % (len(m), len(v), len(e)))
+	if not ((m >= 0).all() and 0 < m.sum() < math.inf): raise ValueError('mass must be finite and not negative, its sum above 0; got %g ... %g' % (m.min(), m.max()))
+	if not (e >= 0).all(): raise ValueError('plasticStrain must not be negative; the smallest is %g' % e.min())
+	impactSpeed = number('impactSpeed', impactSpeed, ValueError, above=0, unit=' m/s')
 	total = m.sum()
 	tail = e < TAIL_STRAIN
 	everything, broken = float(m @ v / total), float(m[e >= BROKEN_STRAIN].sum() / total)
@@ -87,8 +90,11 @@ def geometricLength(positions, plasticStrain, radius, direction=(0., -1.), quant
 
 	positions (N, 2) [m] and plasticStrain (N,) of all rod material; radius of the rod [m]; direction of the impact, to which the axis is parallel,
 	through the middle of the tail. `quantile` of the unbroken material within `radius` of the axis is ahead of the front: single grains do not count.
+	Raises ValueError.
 	"""
-	n, e = np.asarray(direction, float), np.asarray(plasticStrain, float)
+	positions, e = _pieces(positions, plasticStrain)
+	n, radius = array('direction', direction, ValueError, (2, )), number('radius', radius, ValueError, above=0, unit=' m')
+	quantile = number('quantile', quantile, ValueError, low=0, below=1)
 	along, across = speedAlong(positions, n), speedAlong(positions, (-n[1], n[0]))
 	tail = e < TAIL_STRAIN
 	if not tail.any():
@@ -99,24 +105,35 @@ def geometricLength(positions, plasticStrain, radius, direction=(0., -1.), quant
 	return float((np.quantile(along[near & (e < BROKEN_STRAIN)], 1 - quantile) - along[near & tail].min()) / (1 - quantile))
 
 
+def _pieces(positions, plasticStrain):
+	"""Both as arrays of the same length, (N, 2) and (N,); N may be 0."""
+	x, e = array('positions', positions, ValueError, (None, 2), empty=True), array('plasticStrain', plasticStrain, ValueError, (None, ), empty=True)
+	if len(e) != len(x): raise ValueError('positions and plasticStrain must have the same number of entries; got %d and %d' % (len(x), len(e)))
+	return x, e
+
+
 def rearClearance(positions, plasticStrain, rear, normal=(0., -1.), quantile=0.95):
 	"""How far the head of the rod is beyond the plate's original rear face, normal to the face [m], negative before it.
 
 	positions (N, 2) [m] and plasticStrain (N,) of rod material, rear: a point on the face; normal: of the face, out of the plate. The head is the front
 	`quantile` of the material with eps_p below 1 (what is more strained is debris). The study reads its numbers when this is at least half the rod's
-	diameter.
+	diameter. Raises ValueError.
 	"""
-	s = speedAlong(np.asarray(positions, float) - np.asarray(rear, float), normal)
-	s = s[np.asarray(plasticStrain, float) < BROKEN_STRAIN]
+	positions, e = _pieces(positions, plasticStrain)
+	normal, quantile = array('normal', normal, ValueError, (2, )), number('quantile', quantile, ValueError, low=0, high=1)
+	s = speedAlong(positions - array('rear', rear, ValueError, (2, )), normal)
+	s = s[e < BROKEN_STRAIN]
 	return float(np.quantile(s, quantile)) if len(s) else -math.inf
 
 
 def momentumSettled(time, momentum, window, tolerance=1e-3):
 	"""True when the momentum (n,) changed by less than `tolerance` of its first value over the last `window` [s] of time (n,) [s].
 
-	False as long as the record is shorter than the window.
+	False as long as the record is shorter than the window. Raises ValueError.
 	"""
-	t, p = np.asarray(time, float), np.asarray(momentum, float)
+	t, p = array('time', time, ValueError, (None, ), empty=True), array('momentum', momentum, ValueError, (None, ), empty=True)
+	window, tolerance = number('window', window, ValueError, above=0, unit=' s'), number('tolerance', tolerance, ValueError, low=0)
+	if len(t) != len(p) or (np.diff(t) < 0).any(): raise ValueError('time must rise, with one entry per momentum; got %d and %d entries' % (len(t), len(p)))
 	if len(t) < 2 or t[-1] - t[0] < window:
 		return False
 	recent = p[t >= t[-1] - window]

@@ -13,6 +13,8 @@ import math
 
 import numpy as np
 
+from ._arguments import array, number, whole
+
 __all__ = ['OutlineError', 'Polygon', 'Rectangle', 'Predicate', 'disc', 'asOutline']
 
 
@@ -52,11 +54,15 @@ class Polygon:
 	def __init__(self, points, holes=()):
 		"""points (n, 2) and each hole (m, 2) in [m], in either sense of rotation, not closed. Raises OutlineError."""
 		rings = []
+		if not isinstance(holes, (list, tuple, np.ndarray)):
+			raise OutlineError('holes must be a sequence of rings, each an array of at least 3 points (x, y) [m]; got %r' % (holes, ))
 		for k, r in enumerate([points, *holes]):
-			r = np.array(r, float)
-			if r.ndim != 2 or r.shape[1] != 2 or len(r) < 3 or not np.isfinite(r).all():
-				raise OutlineError('a polygon needs at least 3 finite points (x, y); ring %d has shape %s' % (k, r.shape))
+			r = array('holes[%d]' % (k - 1) if k else 'points of a polygon', r, OutlineError, (None, 2))
+			if len(r) < 3:
+				raise OutlineError('each ring of points and holes must have at least 3 finite points (x, y); ring %d has %d' % (k, len(r)))
 			r = r[np.any(r != np.roll(r, 1, axis=0), axis=1)]
+			if abs(r).max(initial=0) > 1e8 * np.ptp(r, axis=0).max(initial=0):
+				raise OutlineError('ring %d of the outline is too far out: its center must be within 1e8 of its sizes from (0, 0), or its points lose their digits' % k)
 			a = ringArea(r) if len(r) > 2 else 0.
 			if abs(a) <= 1e-14 * np.ptp(r, axis=0).max()**2:
 				raise OutlineError('ring %d of the polygon encloses no area' % k)
@@ -76,6 +82,7 @@ class Polygon:
 
 	def edgeDistance(self, points):
 		"""Distance of each point (N, 2) from the nearest edge [m], shape (N,)."""
+		points = array('points', points, OutlineError, (None, 2), empty=True)
 		best = np.full(len(points), np.inf)
 		for a, b in self._edges():
 			e = b - a
@@ -84,7 +91,7 @@ class Polygon:
 		return best
 
 	def classify(self, points, radius):
-		points = np.asarray(points, float)
+		points, radius = array('points', points, OutlineError, (None, 2), empty=True), number('radius', radius, OutlineError, low=0, unit=' m')
 		x, y = points.T
 		odd = np.zeros(len(points), bool)
 		for (ax, ay), (bx, by) in self._edges():  # crossings of the ray towards +x
@@ -94,6 +101,7 @@ class Polygon:
 		return odd | (distance <= 1e-10 * np.ptp(self.rings[0], axis=0).max()), distance < radius
 
 	def overlap(self, cells):
+		cells = array('cells', cells, OutlineError, (None, None, 2), empty=True)
 		return np.array([sum(ringArea(c) for c in (clipByConvex(r, cell) for r in self.rings) if len(c)) for cell in cells]).reshape(len(cells))
 
 
@@ -101,21 +109,22 @@ class Rectangle(Polygon):
 	"""A rectangle of `size` (width, height) [m] about `center` [m], turned by `angle` [rad] against the x axis."""
 
 	def __init__(self, center, size, angle=0.):
-		self.center, self.size, self.angle = np.array(center, float), np.array(size, float), float(angle)
-		if self.center.shape != (2,) or self.size.shape != (2,) or not (self.size > 0).all():
-			raise OutlineError('a rectangle needs a center (x, y) and a size (width, height) above 0; got %s and %s' % (center, size))
-		c, s = math.cos(angle), math.sin(angle)
+		self.center, self.size = array('center', center, OutlineError, (2, )), array('size', size, OutlineError, (2, ))
+		self.angle = number('angle', angle, OutlineError, low=-1e6, high=1e6, unit=' rad')
+		if not (self.size > 0).all():
+			raise OutlineError('size of a rectangle (width, height) must be above 0; got %s' % (size, ))
+		c, s = math.cos(self.angle), math.sin(self.angle)
 		corners = 0.5 * self.size * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
 		super().__init__(self.center + corners @ np.array([(c, s), (-s, c)]))
 
 
 def disc(center, radius, segments=180):
 	"""A disc as a regular polygon of equal area with `segments` sides; center (x, y) and radius in [m]."""
-	if not radius > 0:
-		raise OutlineError('the radius of a disc must be above 0; got %r' % radius)
+	center, radius = array('center', center, OutlineError, (2, )), number('radius', radius, OutlineError, above=0, high=1e100, unit=' m')
+	segments = whole('segments', segments, OutlineError, 3, 10**6)
 	a = 2 * math.pi * (np.arange(segments) + 0.5) / segments
 	r = radius * math.sqrt(2 * math.pi / segments / math.sin(2 * math.pi / segments))
-	return Polygon(np.asarray(center, float) + r * np.stack((np.cos(a), np.sin(a)), axis=1))
+	return Polygon(center + r * np.stack((np.cos(a), np.sin(a)), axis=1))
 
 
 class Predicate:
@@ -133,11 +142,11 @@ class Predicate:
 			lo, hi = predicate.aabb()
 			lo, hi = [float(v) for v in lo], [float(v) for v in hi]
 		except AttributeError:
-			raise OutlineError('a predicate needs a method aabb() as in yade.pack; %r has none' % (predicate,)) from None
+			raise OutlineError('predicate must have a method aabb() as in yade.pack; %r has none' % (predicate, )) from None
 		if not all(map(math.isfinite, lo[:2] + hi[:2])):
 			raise OutlineError('the predicate is unbounded in the x-y plane: %s to %s; intersect it with a box' % (lo, hi))
 		mid = 0.5 * (lo[2] + hi[2])
-		self.z = z if z is not None else mid if math.isfinite(mid) else 0.
+		self.z = number('z', z, OutlineError, unit=' m') if z is not None else mid if math.isfinite(mid) else 0.
 		self._bounds = (lo[0], lo[1], hi[0], hi[1])
 
 	def bounds(self):
@@ -145,16 +154,19 @@ class Predicate:
 
 	def inside(self, points, pad=0.):
 		p, z = self.predicate, self.z
-		return np.fromiter((p((x, y, z), pad) for x, y in np.asarray(points, float).tolist()), bool, len(points))
+		points, pad = array('points', points, OutlineError, (None, 2), empty=True), number('pad', pad, OutlineError, unit=' m')
+		return np.fromiter((p((x, y, z), pad) for x, y in points.tolist()), bool, len(points))
 
 	def classify(self, points, radius):
+		points, radius = array('points', points, OutlineError, (None, 2), empty=True), number('radius', radius, OutlineError, low=0, unit=' m')
 		inside = self.inside(points)
 		cut = inside.copy()
-		cut[inside] = ~self.inside(np.asarray(points, float)[inside], radius)
+		cut[inside] = ~self.inside(points[inside], radius)
 		return inside, cut
 
 	def overlap(self, cells):
-		return np.array([self._overlap(np.asarray(c, float)) for c in cells]).reshape(len(cells))
+		cells = array('cells', cells, OutlineError, (None, None, 2), empty=True)
+		return np.array([self._overlap(c) for c in cells]).reshape(len(cells))
 
 	def _overlap(self, cell):
 		lo, hi = cell.min(axis=0), cell.max(axis=0)
@@ -173,5 +185,5 @@ def asOutline(shape):
 		return Predicate(shape)
 	try:
 		return Polygon(shape)
-	except (TypeError, ValueError) as e:
-		raise OutlineError('an outline is a Polygon, a Rectangle, an array of points (n, 2) or a yade.pack predicate; got %r: %s' % (shape, e)) from None
+	except OutlineError as e:
+		raise OutlineError('the shape of an outline must be a Polygon, a Rectangle, an array of points (n, 2) or a yade.pack predicate; got %r: %s' % (shape, e)) from None

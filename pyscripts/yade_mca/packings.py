@@ -8,10 +8,12 @@
 A packing is numbers only (numpy arrays); addBodies() alone needs YADE. All lengths in [m], areas and masses per unit thickness.
 """
 import math
+import reprlib
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ._arguments import array, number, oneOf, whole
 from .outlines import Polygon, Predicate, Rectangle, asOutline, disc
 
 __all__ = ['Packing', 'PackingError', 'CellGeometry', 'cellGeometry', 'hexagonal', 'create', 'addBodies', 'Polygon', 'Predicate', 'Rectangle', 'disc']
@@ -31,8 +33,9 @@ class CellGeometry:
 	contact: float  #: S0 [m or m2]
 
 
-def cellGeometry(name, d, dim=None):
-	"""Omega0, S0, N0 and dimension of the packing `name` at spacing d [m]. In each, Omega0 = N0 S0 d / (2 dim)."""
+def cellGeometry(name, d):
+	"""Omega0, S0, N0 and dimension of the packing `name` at spacing d [m]. In each, Omega0 = N0 S0 d / (2 dim). Raises PackingError."""
+	d = number('spacing d', d, PackingError, above=0, unit=' m')
 	r2, r3 = math.sqrt(2), math.sqrt(3)
 	table = {
 	        'hexagonal': (2, 6, r3 / 2 * d**2, d / r3),
@@ -41,9 +44,7 @@ def cellGeometry(name, d, dim=None):
 	        'fcc': (3, 12, d**3 / r2, d**2 / (2 * r2)),
 	        'hcp': (3, 12, d**3 / r2, d**2 / (2 * r2)),
 	}
-	if name not in table:
-		raise PackingError("unknown packing '%s'; known are %s" % (name, ', '.join(table)))
-	return CellGeometry(name, *table[name])
+	return CellGeometry(oneOf('name of a packing', name, table, PackingError), *table[name])
 
 
 @dataclass(frozen=True)
@@ -73,21 +74,35 @@ class Packing:
 		return float(self.weight.sum()) * self.cell.volume
 
 	def masses(self, density):
-		"""Mass of each automaton per unit thickness [kg/m], shape (N,)."""
-		return density * self.cell.volume * self.weight
+		"""Mass of each automaton per unit thickness [kg/m], shape (N,); density [kg/m3]. Raises PackingError."""
+		return number('density', density, PackingError, above=0, unit=' kg/m3') * self.cell.volume * self.weight
 
 	def translated(self, by):
-		"""The packing moved by (dx, dy) [m]."""
-		return replace(self, positions=self.positions + np.asarray(by, float))
+		"""The packing moved by (dx, dy) [m]. Raises PackingError."""
+		return replace(self, positions=self.positions + array('by', by, PackingError, (2, )))
 
 	def select(self, which):
-		"""The automata `which` (bool (N,) or indices) as a packing of their own."""
+		"""The automata `which` (bool (N,), or indices from 0 to N - 1) as a packing of their own. Raises PackingError."""
+		which = self._chosen(which)
 		return replace(self, positions=self.positions[which], weight=self.weight[which], lattice=self.lattice[which], outlineArea=None)
 
+	def _chosen(self, which):
+		n = len(self)
+		try:
+			a = np.asarray(which)
+		except ValueError:
+			a = np.asarray(None)
+		if a.ndim == 1 and len(a) and (a.dtype == bool and len(a) == n and a.any() or a.dtype.kind in 'iu' and a.min() >= 0 and a.max() < n): return a
+		raise PackingError('which must be %d truth values, one of them true, or indices from 0 to %d; got %s' % (n, n - 1, reprlib.repr(which)))
+
 	def onLine(self, point, direction, tolerance=1e-6):
-		"""Indices of the automata on a straight line, sorted along it; tolerance as a share of the spacing."""
-		t = np.asarray(direction, float) / np.hypot(*direction)
-		r = self.positions - np.asarray(point, float)
+		"""Indices of the automata on a straight line through point (x, y) [m], sorted along it; tolerance as a share of the spacing. Raises PackingError."""
+		t = array('direction', direction, PackingError, (2, ))
+		if not 0 < np.hypot(*t) < math.inf:
+			raise PackingError('direction must not be zero; got %r' % (direction, ))
+		t = t / np.hypot(*t)
+		r = self.positions - array('point', point, PackingError, (2, ))
+		tolerance = number('tolerance', tolerance, PackingError, low=0)
 		at = np.flatnonzero(abs(r[:, 0] * t[1] - r[:, 1] * t[0]) <= tolerance * self.spacing)
 		return at[np.argsort(r[at] @ t)]
 
@@ -103,8 +118,8 @@ class Packing:
 		return p[np.lexsort((p[:, 1], p[:, 0]))]
 
 	def hexagons(self, scale=1.):
-		"""Corners of the cells, (N, 6, 2) [m], for pictures and areas."""
-		return self.positions[:, None, :] + scale * _hexagon(self.spacing, self.angle)
+		"""Corners of the cells, (N, 6, 2) [m], for pictures and areas; scale: of the cells about their centres. Raises PackingError."""
+		return self.positions[:, None, :] + number('scale', scale, PackingError, above=0) * _hexagon(self.spacing, self.angle)
 
 
 class _Table:
@@ -158,6 +173,8 @@ def _candidates(outline, d, angle, origin):
 	x0, y0, x1, y1 = outline.bounds()
 	corners = (np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)]) - origin) @ _rotation(angle).T
 	pitch = 0.5 * math.sqrt(3) * d
+	if abs(corners).max() > 1e9 * d:
+		raise PackingError('origin and outline must be within 1e9 spacings of each other; they are %g spacings of %g m apart' % (abs(corners).max() / d, d))
 	low = np.floor(corners.min(axis=0) / (d, pitch)).astype(int) - 2
 	high = np.ceil(corners.max(axis=0) / (d, pitch)).astype(int) + 2
 	if np.prod((high - low + 1.).astype(float)) > 3e8:
@@ -181,18 +198,16 @@ def hexagonal(spacing, outline, angle=0., origin=None, rim='cells', minWeight=0.
 	                    the outline (polygons; with predicates as exact as the sampling). Automata on the outline get 1/2: tied rows.
 	           'full':  the same automata, all of weight 1: the body is the union of its cells, stiffness and mass match everywhere, and
 	                    its area differs from the outline's by at most the rim
-	Raises PackingError when the spacing is not positive and finite or no automaton fits.
+	Raises PackingError, or OutlineError, for an argument that is out of range and when no automaton fits.
 	"""
-	d = float(spacing)
+	d = number('spacing', spacing, PackingError, above=0, unit=' m')
+	angle = number('angle', angle, PackingError, low=-1e6, high=1e6, unit=' rad')
 	outline = asOutline(outline)
 	x0, y0, x1, y1 = outline.bounds()
-	if not (d > 0 and math.isfinite(d)):
-		raise PackingError('the spacing must be above 0 and finite; got %r' % spacing)
 	if rim not in ('cells', 'full'):
-		raise PackingError("rim '%s' is neither 'cells' nor 'full'" % rim)
-	if not 0 <= minWeight < 0.5:
-		raise PackingError('minWeight must be at least 0 and below 0.5 (tied rows have 1/2); got %r' % minWeight)
-	origin = _fittedOrigin(outline, d, angle) if origin is None else np.asarray(origin, float)
+		raise PackingError("rim %r is neither 'cells' nor 'full'; it must be one of them" % (rim, ))
+	minWeight = number('minWeight', minWeight, PackingError, low=0, below=0.5)  # tied rows have 1/2
+	origin = _fittedOrigin(outline, d, angle) if origin is None else array('origin', origin, PackingError, (2, ))
 	lattice, positions = _candidates(outline, d, angle, origin)
 	inside, cut = outline.classify(positions, d / math.sqrt(3))
 	cellArea = cellGeometry('hexagonal', d).volume
@@ -247,10 +262,10 @@ _REFUSED = {
 def create(name, spacing, outline, **options):
 	"""The packing `name` by hexagonal(); in plane strain all others are refused with the reason (PackingError)."""
 	for refused, reason in _REFUSED.items():
-		if name in refused:
+		if isinstance(name, str) and name in refused:
 			raise PackingError("packing '%s' is refused in plane strain: %s. Use 'hexagonal'." % (name, reason))
 	if name != 'hexagonal':
-		raise PackingError("unknown packing '%s'; plane strain has 'hexagonal'" % name)
+		raise PackingError('unknown packing name %r: in plane strain it must be \'hexagonal\'' % (name, ))
 	return hexagonal(spacing, outline, **options)
 
 
@@ -259,6 +274,8 @@ def _material(material):
 	from ._yade import scene
 	from .materials import Material, mcaMat
 	m = mcaMat(material) if isinstance(material, (str, Material)) else material
+	if not (hasattr(m, 'newAssocState') and hasattr(m, 'density')):
+		raise PackingError('material must be a McaMat, or a name or record of the library (materials.names()); got %r' % (m, ))
 	if getattr(m, 'id', 0) < 0:
 		scene().materials.append(m)
 	return m
@@ -270,24 +287,29 @@ def addBodies(packing, material, velocity=(0., 0.), angularVelocity=0., mask=1, 
 	material     McaMat, or a name or record of the library; needs density [kg/m3]
 	velocity     (2,) or (N, 2) [m/s]
 	angularVelocity  about z, of each automaton [rad/s]
-	mask         Body.mask (int), by which other engines tell groups of bodies apart
+	mask         Body.mask (int, its 32 bits), by which other engines tell groups of bodies apart
 	fixed        True: all degrees of freedom are blocked, so that the bodies keep the velocity they have; else those out of the plane, 'zXY'
 	color        (r, g, b) in 0 ... 1, default grey
 	Mass is weight * density * Omega0 and the moment of inertia m R^2/2 (disc), both per 1 m of thickness.
-	Raises PackingError for a velocity or density that is not finite or of the wrong shape.
+	Raises PackingError for an argument that is not finite, out of range or of the wrong shape, before there is a body.
 	"""
 	from ._yade import scene, yadeClass
-	velocity = np.asarray(velocity, float)
-	if velocity.shape not in ((2,), (len(packing), 2)) or not np.isfinite(velocity).all():
-		raise PackingError('velocity must be finite, of shape (2,) or (%d, 2); it has shape %s' % (len(packing), velocity.shape))
+	if not isinstance(packing, Packing):
+		raise PackingError('packing must be a Packing, as hexagonal() makes one; got %r' % (packing, ))
+	velocity = array('velocity', velocity, PackingError, ((2, ), (len(packing), 2)))
+	angularVelocity = number('angularVelocity', angularVelocity, PackingError, unit=' rad/s')
+	mask = whole('mask', mask, PackingError, -2**31, 2**31 - 1)
+	color = (0.6, 0.6, 0.6) if color is None else tuple(array('color', color, PackingError, (3, )).tolist())
+	if not all(0 <= c <= 1 for c in color):
+		raise PackingError('color must be (r, g, b), each from 0 to 1; got %r' % (color, ))
 	m = _material(material)
 	if not (m.density > 0 and math.isfinite(m.density)):
 		raise PackingError('density of the material must be above 0; it is %r' % m.density)
 	Body, Sphere = yadeClass('Body'), yadeClass('Sphere')
-	radius, color = packing.radius, tuple(color or (0.6, 0.6, 0.6))
+	radius = packing.radius
 	masses = packing.masses(m.density)
 	rows = zip(packing.positions.tolist(), np.broadcast_to(velocity, (len(packing), 2)).tolist(), masses.tolist(), (0.5 * radius**2 * masses).tolist())
-	blocked, spin = 'xyzXYZ' if fixed else 'zXY', (0., 0., float(angularVelocity))
+	blocked, spin = 'xyzXYZ' if fixed else 'zXY', (0., 0., angularVelocity)
 	bodies = []
 	for (x, y), (vx, vy), mass, inertia in rows:
 		b = Body()

@@ -66,6 +66,17 @@ def argumentsOf(where, function=None):
 	return out
 
 
+def constants():
+	"""The keywords of materials.get(): all constants of a material with their values."""
+	r = record()
+	return {f.name: getattr(r, f.name) for f in dataclasses.fields(r) if f.name in keywords()}
+
+
+def keywords():
+	from yade_mca import materials
+	return materials.MCAMAT_ATTRIBUTES
+
+
 def kindsOf(value, name):
 	"""Bad values instead of this right one."""
 	if isinstance(value, bool): return {}  # Python counts the truth of anything
@@ -74,6 +85,7 @@ def kindsOf(value, name):
 	if name in ('material', 'rod', 'plate', 'flyer', 'target') and isinstance(value, str): return {**values.TEXT, **values.objects(None)}
 	if isinstance(value, str): return values.TEXT
 	if isinstance(value, tuple) and value and all(isinstance(v, float) for v in value): return values.vector(len(value))
+	if name in ('engineOptions', 'scene', 'friction', 'label'): return {k: v for k, v in values.ANY.items() if k not in ('none', 'dict', 'empty')}
 	if isinstance(value, (list, tuple)) or value is None: return values.ANY
 	return values.objects(None)
 
@@ -82,7 +94,7 @@ def targets(module):
 	"""(name within the module, function of a ready object or None, callable) of all that scripts may call."""
 	m = importlib.import_module('yade_mca.' + module)
 	for name, thing in vars(m).items():
-		if name.startswith('_') or getattr(thing, '__module__', None) != m.__name__ or name in RESULTS: continue
+		if name not in getattr(m, '__all__', [name]) or name.startswith('_') or getattr(thing, '__module__', None) != m.__name__ or name in RESULTS: continue
 		if inspect.isfunction(thing): yield name, None, thing
 		elif inspect.isclass(thing) and not issubclass(thing, BaseException):
 			if not dataclasses.is_dataclass(thing): yield name, None, thing
@@ -91,7 +103,7 @@ def targets(module):
 
 
 def ready(module, name, cls):
-	made = {'Packing': packing, 'Material': record}
+	made = {'Packing': packing, 'Material': record, 'Scene': penetrationScene}
 	return made.get(name) or (lambda: cls(**argumentsOf('%s.%s' % (module, name), cls)))
 
 
@@ -112,6 +124,7 @@ def call(module, name, owner, function, argument, value):
 		O.reset()
 		where = '%s.%s' % (module, name)
 		given = argumentsOf(where, function)
+		if argument in keywords() and where == 'materials.get': given['yieldModel'] = None
 		made = owner() if owner else None
 		O.reset()
 		if argument is not None: given[argument] = value
@@ -140,7 +153,9 @@ def everyCall(Call, study):
 		for name, owner, function in targets(module):
 			where = '%s.%s' % (module, name)
 			yield Call('%s = good' % where, where, 'good', 'before', call(module, name, owner, function, None, None))
-			for argument, value in argumentsOf(where, function).items():
+			arguments = argumentsOf(where, function)
+			if where == 'materials.get': arguments.update(constants())
+			for argument, value in arguments.items():
 				if argument in table().SELDOM.get(where, ()): continue
 				for kind, bad in kindsOf(value, argument).items():
 					run = call(module, name, owner, function, argument, bad)

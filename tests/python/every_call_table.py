@@ -15,7 +15,7 @@ MAY_FAIL = ('foreign', 'halfMade', 'noState', 'emptyScene', 'erased', 'afterRese
 ALSO_CALLED = {
         'pos': ('position', ), 'vel': ('velocity', ), 'angVel': ('angular velocity', 'spin'), 'ori': ('orientation', ), 'frictionAngle': ('friction', ), 'ids': ('body', 'bodies'),
         'nodes': ('node', ), 'xs': ('line', 'rising'), 'ys': ('line', 'rising'), 'i': ('node', ), 'j': ('node', ), 'number': ('gauge', ), 'what': ('view', ), 'at': ('point', 'gauge'),
-        'start': ('nodes', ), 'end': ('nodes', ), 'McaEngine.field(name)': ('field', ), 'automata': ('McaEngine', ), 'grid': ('McaGridEngine', ), 'plasticStrain': ('plastic strain', ), 'heatCapacity': ('taylorQuinney/(density heatCapacity)', )
+        'start': ('nodes', ), 'end': ('nodes', ), 'McaEngine.field(name)': ('field', ), **{k: ('unknown material', 'material', 'newAssocState') for k in ('name', 'material', 'rod', 'plate', 'flyer', 'target')}, 'automata': ('McaEngine', ), 'grid': ('McaGridEngine', ), 'plasticStrain': ('plastic strain', ), 'heatCapacity': ('taylorQuinney/(density heatCapacity)', )
 }
 
 # ---- right arguments
@@ -102,6 +102,30 @@ ACCEPTED = {
         'McaEngine.setViscous(ids)': ('empty', 'nobody'),
 }
 for m in 'prescribe(x)', 'prescribe(y)': ACCEPTED['McaGridEngine.' + m] = ('zero negative half none', 'any finite number; None: free')
+ACCEPTED.update({
+        # packings and outlines
+        **{'packings.%s' % k: ('zero negative', 'any finite numbers') for k in ('Packing.translated(by)', 'Packing.onLine(point)', 'addBodies(velocity)', 'addBodies(angularVelocity)')},
+        **{'outlines.%s' % k: ('zero negative', 'any finite numbers') for k in ('Rectangle(center)', 'Rectangle(angle)', 'disc(center)', 'Predicate.inside(pad)')},
+        'packings.Packing.onLine(direction)': ('negative', 'to the left'), 'packings.Packing.onLine(tolerance)': ('zero', 'to the last bit'), 'packings.hexagonal(angle)': ('zero negative', 'any angle'),
+        'packings.hexagonal(origin)': ('zero negative none', 'any place; None: the middle of the outline'), 'packings.hexagonal(minWeight)': ('zero', 'all automata inside stay'),
+        'packings.addBodies(mask)': ('negative -2 zero huge -huge', '32 bits'), 'packings.addBodies(color)': ('zero none', 'black; the default'),
+        'outlines.Polygon(holes)': ('empty', 'no hole'), 'outlines.Polygon.edgeDistance(points)': ('empty', 'no point'), 'outlines.Polygon.classify(points)': ('empty', 'no point'),
+        'outlines.Polygon.classify(radius)': ('zero', 'a point'), 'outlines.Polygon.overlap(cells)': ('empty cube', 'no cell; cells of two corners enclose nothing'), 'outlines.Predicate(z)': ('zero negative none', 'any plane; the middle'),
+        'outlines.Predicate.inside(points)': ('empty', 'no point'), 'outlines.Predicate.classify(points)': ('empty', 'no point'), 'outlines.Predicate.classify(radius)': ('zero', 'a point'),
+        'outlines.Predicate.overlap(cells)': ('empty cube', 'no cell; cells of two corners enclose nothing'),
+        # measure
+        'measure.speedAlong(velocity)': ('empty', 'nobody'), **{'measure.%s(direction)' % m: ('negative', 'to the left') for m in ('speedAlong', 'rodMeasure', 'rearClearance')},
+        'measure.rearClearance(rear)': ('zero negative', 'any point'), 'measure.rearClearance(quantile)': ('zero', 'the rearmost'), 'measure.momentumSettled(tolerance)': ('zero', 'not at all'),
+        'measure.momentumSettled(time)': ('three', 'right'), 'measure.momentumSettled(momentum)': ('three', 'right'),
+        # materials
+        **{'materials.Material.%s' % k: ('zero list empty none', 'numbers or arrays of any shape; None: the reference') for k in ('flowStress(plasticStrain)', 'flowStress(rate)', 'flowStress(temperature)')},
+        'materials.Material.johnsonCookFractureStrain(triaxiality)': ('zero negative list empty', 'numbers or arrays of any shape'),
+        **{'materials.Material.johnsonCookFractureStrain(%s)' % k: ('zero list empty', 'numbers or arrays of any shape') for k in ('rate', 'temperature')},
+        'materials.get(yieldModel)': ('none', 'the fullest'), 'materials.mcaMat(yieldModel)': ('none', 'the fullest'), 'materials.mcaMat(label)': (ALL, 'any name'),
+        **{'materials.get(%s)' % k.split('.')[1]: v for k, v in ACCEPTED.items() if k.startswith('McaMat.') and '(' not in k}, 'materials.get(frictionAngle)': ('zero', 'smooth'),
+        'materials.get(shearModulus)': ('zero nan', 'a fluid; an equation of state alone'), 'materials.get(yieldStress)': ('inf huge', 'elastic'),
+        'materials.get(hardeningExponent)': ('zero', 'laws without it'), 'materials.get(thermalSoftening)': ('zero', 'laws without it'),
+})
 
 
 def accepted(key, kind, moment):
