@@ -115,7 +115,7 @@ class Move:
 class Erase:
 	"""What is erased is gone; a body at rest stays at rest; without its target C1 flies on; a stressed body keeps the momentum of what is left."""
 	mayRefuse = 'all'
-	words = ('body|bodies', )
+	words = ('body|bodies', '^(?!.*damaged)')  # nothing is damaged when a script erases a body
 
 	def apply(self, c):
 		from yade import O

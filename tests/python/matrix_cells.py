@@ -20,7 +20,7 @@ from matrix_actions import ACTIONS, undisturbed
 from matrix_scene import DT, MatrixScene, difference
 
 ROADS = ('engine', 'law2', 'coupled')
-STEPS, GAP, AFTER = 32, 40, 60  #: steps to the stop, until C1 meets C2, and from there to the end
+STEPS, GAP, AFTER = 56, 64, 60  #: steps to the stop, until C1 meets C2, and from there to the end
 LONG = 600  #: gap where nobody knows at which step the run stops
 
 

@@ -28,7 +28,7 @@ _done, _pool = {}, ThreadPoolExecutor(len(ROADS))
 
 
 def _start(road, wanted):
-	path = os.pathsep.join([str(HERE), str(HERE.parents[1] / 'pyscripts')] + sys.path)
+	path = os.pathsep.join(sys.path + [str(HERE), str(HERE.parents[1] / 'pyscripts')])
 	env = dict(os.environ, PYTHONPATH=path, MPLBACKEND='Agg', OMP_NUM_THREADS='1')
 	said, lines = tempfile.TemporaryFile('w+'), queue.Queue()
 	command = ['/usr/bin/python3', str(HERE / 'matrix_cells.py'), road]
