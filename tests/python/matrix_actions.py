@@ -46,9 +46,10 @@ class Read:
 		if c.road != 'law2':
 			e = c.scene.engine()
 			ids = np.array(e.ids)
-			for k in ('x', 'y', 'vx', 'vy', 'omega', 'pressure', 'plasticStrain', 'temperature', 'links'):
-				f = e.field(k)
-				for group, now in c.seen.items():
+			fields = {k: e.field(k) for k in COLUMNS}
+			bodies = c.scene.look()
+			for k, f in fields.items():
+				for group, now in bodies.items():
 					if group == 'grid': continue
 					at = np.searchsorted(ids, c.scene.ids[group])
 					same = at.max() < len(f) and np.array_equal(f[at], now[:, COLUMNS.index(k)])
