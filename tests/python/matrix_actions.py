@@ -27,8 +27,7 @@ def assign(changes):
 	"""Sets (body id, 'state' or 'material' or None, attribute, value) and returns what sets it back."""
 	from yade import O
 	holder = lambda i, part: getattr(O.bodies[i], part) if part else O.bodies[i]
-	kept = lambda v: tuple(v) if hasattr(v, 'norm') else v  # a vector attribute is a reference, which would follow the change
-	old = [(i, part, name, kept(getattr(holder(i, part), name))) for i, part, name, _ in changes]
+	old = [(i, part, name, getattr(holder(i, part), name)) for i, part, name, _ in changes]
 
 	def set(values):
 		for i, part, name, value in values: setattr(holder(i, part), name, value)
@@ -43,14 +42,14 @@ class Read:
 	words = ()
 
 	def apply(self, c):
-		if c.road != 'law2':
-			e = c.scene.engine()
-			ids = np.array(e.ids)  # before the first step they are gathered here
 		c.seen = c.scene.look()
 		if c.road != 'law2':
-			for k in ('x', 'y', 'vx', 'vy', 'omega', 'pressure', 'plasticStrain', 'temperature', 'links'):
-				f = e.field(k)
-				for group, now in c.seen.items():
+			e = c.scene.engine()
+			ids = np.array(e.ids)
+			fields = {k: e.field(k) for k in COLUMNS}
+			bodies = c.scene.look()
+			for k, f in fields.items():
+				for group, now in bodies.items():
 					if group == 'grid': continue
 					at = np.searchsorted(ids, c.scene.ids[group])
 					same = at.max() < len(f) and np.array_equal(f[at], now[:, COLUMNS.index(k)])
@@ -281,13 +280,6 @@ class Save:
 		start, end = c.atTheStop(), undisturbed(c)
 		O.load(self.file)
 		c.compare('loaded', c.scene.look(), start)
-		if c.anew and c.road == 'coupled' and c.stop == 'clear':  # the coupler's bodies are gone, in the file as in the run
-			try:
-				c.goOn()
-				c.problem('the loaded scene was not refused')
-			except RuntimeError as e:
-				if 'tied' not in str(e): c.problem('says too little: %s' % e)
-			return
 		c.goOn()
 		c.compare('loaded and gone on', c.scene.look(), end)
 
