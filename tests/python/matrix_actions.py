@@ -27,7 +27,8 @@ def assign(changes):
 	"""Sets (body id, 'state' or 'material' or None, attribute, value) and returns what sets it back."""
 	from yade import O
 	holder = lambda i, part: getattr(O.bodies[i], part) if part else O.bodies[i]
-	old = [(i, part, name, getattr(holder(i, part), name)) for i, part, name, _ in changes]
+	kept = lambda v: tuple(v) if hasattr(v, 'norm') else v  # a vector attribute is a reference, which would follow the change
+	old = [(i, part, name, kept(getattr(holder(i, part), name))) for i, part, name, _ in changes]
 
 	def set(values):
 		for i, part, name, value in values: setattr(holder(i, part), name, value)

@@ -153,6 +153,7 @@ def test_changesInAPyRunner(plugin, first, reload):
 	new = []
 
 	def act():
+		if new: return
 		for i in ids: O.bodies[i].state.pos += (1e-3, 0, 0)
 		O.bodies.erase(gone)
 		new.extend(block((3., 0.), (0., 80e-3)))
@@ -160,7 +161,7 @@ def test_changesInAPyRunner(plugin, first, reload):
 
 	builtins.act = act
 	if not first: run(10)
-	O.engines = [e, PyRunner(command='act()', iterPeriod=5, nDo=1, initRun=False)]
+	O.engines = [e, PyRunner(command='act()', iterPeriod=5, initRun=False)]
 	before = O.iter
 	O.run(20, True)
 	n = O.iter
