@@ -22,7 +22,7 @@ import every_call_table as table
 import every_call_values as values
 
 HERE = Path(__file__).resolve().parent
-LIMIT = 15.  #: longest silence of the process that makes the calls [s]
+LIMIT = 10., 90.  #: longest silence of the process that makes the calls [s]: by its own clock (a loop), by the clock on the wall (a lock)
 #: what must not happen
 FAULTS = ('crash', 'hang', 'silent', 'moved', 'poor', 'broken')
 #: at moments other than the first two only these kinds are tried, unless in the study
@@ -260,19 +260,28 @@ def make(calls, chosen, journal):
 	os._exit(0)  # whatever a call has left behind is not what is tested here
 
 
+def processorTime(process):
+	"""What a process has used so far [s]; 0 when it has just ended."""
+	try:
+		fields = Path('/proc/%d/stat' % process).read_text().rsplit(')', 1)[1].split()
+	except OSError:
+		return 0.
+	return (int(fields[11]) + int(fields[12])) / os.sysconf('SC_CLK_TCK')
+
+
 def follow(process, journal):
 	"""Waits until the process ends, or is silent too long. Returns ('crash' or 'hang', text)."""
-	size, since = -1, time.time()
+	size, since, used = -1, 0., 0.
 	while True:
 		pid, status = os.waitpid(process, os.WNOHANG)
 		if pid: break
 		now = journal.stat().st_size if journal.exists() else 0
-		if now != size: size, since = now, time.time()
-		if time.time() - since > LIMIT:
+		if now != size: size, since, used = now, time.time(), processorTime(process)
+		if processorTime(process) - used > LIMIT[0] or time.time() - since > LIMIT[1]:
 			os.kill(process, signal.SIGKILL)
 			os.waitpid(process, 0)
-			return 'hang', 'no answer in %g s' % LIMIT
-		time.sleep(0.01)
+			return 'hang', 'no answer in %g s of processor time or %g s' % LIMIT
+		time.sleep(0.02)
 	tail = Path(str(journal) + '.err').read_bytes()[-400:].decode(errors='replace').strip().split('\n')[-1]
 	return 'crash', ('signal %d' % os.WTERMSIG(status) if os.WIFSIGNALED(status) else 'status %d' % os.WEXITSTATUS(status)) + ': ' + tail
 

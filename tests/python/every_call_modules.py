@@ -94,7 +94,7 @@ def targets(module):
 	"""(name within the module, function of a ready object or None, callable) of all that scripts may call."""
 	m = importlib.import_module('yade_mca.' + module)
 	for name, thing in vars(m).items():
-		if name not in getattr(m, '__all__', [name]) or name.startswith('_') or getattr(thing, '__module__', None) != m.__name__ or name in RESULTS: continue
+		if name not in m.__all__ or not str(getattr(thing, '__module__', None)).startswith('yade_mca') or name in RESULTS: continue
 		if inspect.isfunction(thing): yield name, None, thing
 		elif inspect.isclass(thing) and not issubclass(thing, BaseException):
 			if not dataclasses.is_dataclass(thing): yield name, None, thing
