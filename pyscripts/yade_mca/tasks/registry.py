@@ -18,7 +18,7 @@ TASKS = {
         'abi': 'abi',
 }
 SUMMARIES = {
-        'penetration': 'a tungsten rod through a steel plate: pictures, losses of speed and length',
+        'penetration': 'a tungsten rod through a steel plate: losses of speed and length, pictures, animation, page',
         'table1': 'six plate thicknesses in both modes beside the published table',
         'study': 'how the penetration result depends on spacing, seeds, options and width',
         'verify': 'automata, grid, interface or all against exact solutions',
