@@ -5,6 +5,32 @@
 
 namespace mca::automata {
 
+Solver Solver::knowing(const std::vector<Automaton>& automata, const std::vector<Material>& materials, const std::vector<LinkRecord>& links)
+{
+	auto   apart = automata; // in one row, so far apart that no links form but those that are told
+	double d     = 0;
+	for (auto& a : apart)
+		d = std::max(d, a.diameter);
+	for (size_t i = 0; i < apart.size(); i++)
+		apart[i].x = 4. * d * double(i), apart[i].y = 0;
+	Options o;
+	o.contacts = false;
+	Solver known;
+	known.build(apart, materials, o);
+	Store& S = known.store;
+	for (const LinkRecord& r : links) {
+		const size_t i = size_t(known.indexOf(r.id));
+		S.flags[i] = r.flags, S.invN[i] = r.invN;
+		for (int k = 0; k < nLinks; k++) {
+			const int64_t j = known.indexOf(r.partner[k]);
+			if (j >= 0) S.neighbour[linkSlot(i, k)] = int32_t(j);
+			else if ((S.flags[i] >> (hadShift + k)) & 1) // its partner was erased
+				S.flags[i] = (S.flags[i] & ~((1 << k) | (1 << (halfShift + k)) | (1 << (hadShift + k)))) | exposedBit;
+		}
+	}
+	return known;
+}
+
 /// Links between automata that the old solver knew, in their old slots; links to erased ones are gone for good.
 void Solver::inheritLinks(const Solver& old)
 {
@@ -51,7 +77,10 @@ void Solver::inheritState(const Solver& old)
 		// the volume goes on from where it was (the change over the last step is lost: J was taken before the last move)
 		if (options.volumeRule == VolumeRule::affine && S.jOff[i] == 0.) S.jOff[i] = 1.;
 		if (options.volumeRule == VolumeRule::affine) keepVolume(i, S.J[i]);
-		else keepSum(i);
+		else {
+			keepSum(i);
+			if (S.flags[i] & linkBits && O.blocks[size_t(o) / blockSize].contact) S.rest[i] += old.contactSum(size_t(o)); // its contacts come back with the search
+		}
 	}
 	for (int32_t o : old.tied) { // tied ones keep their places in the order of tie()
 		const int64_t i = indexIn(old, O.id[o]) < 0 ? -1 : indexOf(O.id[o]);

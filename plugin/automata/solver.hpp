@@ -32,6 +32,13 @@ struct Automaton {
 	bool    isNew = false; ///< build with an old solver: another automaton than the one that had this number there
 };
 
+/// What a loop of its own (YADE's) keeps of an automaton's links, see Solver::knowing().
+struct LinkRecord {
+	int32_t id = 0, flags = 0; ///< Flag bits
+	int32_t partner[nLinks] = { -1, -1, -1, -1, -1, -1 }; ///< caller's numbers; -1: none
+	double  invN = 1. / nLinks;
+};
+
 /// Energies [J/m]; independent ones from state functions and each dissipation's own increments, booked ones from forces and velocities.
 struct Account {
 	double kinetic = 0, volumetric = 0, deviatoric = 0;                    ///< now
@@ -61,6 +68,9 @@ public:
 	/// old: the solver of the set before automata were added or erased; those it knew by the same number keep links, stresses, contacts and history,
 	/// and new links form only with automata that it did not know.
 	void build(const std::vector<Automaton>& automata, const std::vector<Material>& materials, const Options& options, const Solver* old = nullptr);
+
+	/// A solver that knows these automata by their numbers and links and nothing else: `old` of build() for a caller that keeps the history itself.
+	static Solver knowing(const std::vector<Automaton>& automata, const std::vector<Material>& materials, const std::vector<LinkRecord>& links);
 
 	/// Forces at the present positions from the last move. Throws Error (deep overlap, non-finite result); positions stay as they are.
 	void computeForces();

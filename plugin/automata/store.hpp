@@ -52,6 +52,12 @@ inline void pairViscosity(const Material& a, const Material& b, double& linear, 
 	quadratic = std::min(a.viscosity.quadratic * a.eos.rho0, b.viscosity.quadratic * b.eos.rho0);
 }
 
+/// Pairs of them have the same constants.
+inline bool samePairs(const Material& a, const Material& b)
+{
+	return a.G == b.G && a.friction == b.friction && a.eos.rho0 == b.eos.rho0 && a.eos.c0 == b.eos.c0 && a.viscosity.linear == b.viscosity.linear && a.viscosity.quadratic == b.viscosity.quadratic;
+}
+
 struct Store {
 	// one entry per automaton; SI units per unit thickness
 	std::vector<double> x, y, vx, vy, omega, angle;      ///< position [m], velocity [m/s], spin [rad/s], turned angle [rad]

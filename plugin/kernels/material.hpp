@@ -58,6 +58,13 @@ inline void validate(const Material& m, const std::string& name)
 	need(m.G >= 0 && m.G < inf, "shearModulus [Pa]", m.G, "finite and not negative");
 	need(m.yield.A >= 0, "yieldStress [Pa]", m.yield.A, "not negative (infinite: elastic)");
 	need(m.yield.B >= 0 && m.yield.B < inf, "hardeningModulus [Pa]", m.yield.B, "finite and not negative");
+	// those of Johnson and Cook must be numbers for any law: nobody means NaN
+	need(std::isfinite(m.yield.n), "hardeningExponent [-]", m.yield.n, "finite");
+	need(std::isfinite(m.yield.C), "rateCoefficient [-]", m.yield.C, "finite");
+	need(std::isfinite(m.yield.rate0), "referenceRate [1/s]", m.yield.rate0, "finite");
+	need(std::isfinite(m.yield.m), "thermalSoftening [-]", m.yield.m, "finite");
+	need(m.yield.Tm > 0, "meltTemperature [K]", m.yield.Tm, "above zero (infinite: never)");
+	need(m.yield.T0 >= 0 && m.yield.T0 < inf, "referenceTemperature [K]", m.yield.T0, "finite and not negative");
 	if (m.yield.kind == YieldKind::johnsonCook) {
 		need(m.yield.A < inf, "yieldStress [Pa]", m.yield.A, "finite for johnsonCook");
 		need(m.yield.n > 0 && m.yield.n <= 1, "hardeningExponent [-]", m.yield.n, "in (0, 1]");
@@ -74,7 +81,7 @@ inline void validate(const Material& m, const std::string& name)
 	need(m.fracture.ratio >= 1 && m.fracture.ratio < inf, "strengthRatio [-]", m.fracture.ratio, "finite and at least 1");
 	need(m.viscosity.linear >= 0 && m.viscosity.linear < inf, "viscosityLinear [-]", m.viscosity.linear, "finite and not negative");
 	need(m.viscosity.quadratic >= 0 && m.viscosity.quadratic < inf, "viscosityQuadratic [-]", m.viscosity.quadratic, "finite and not negative");
-	need(m.friction >= 0 && m.friction < inf, "friction [-]", m.friction, "finite and not negative");
+	need(m.friction >= 0 && m.friction <= 1300, "friction [-]", m.friction, "from 0 to 1300 (an angle below pi/2)");
 }
 
 /// Equal in every constant.

@@ -50,6 +50,7 @@ McaBodies::McaBodies(const Scene& scene, int seed)
 void McaBodies::add(const Body& b, int seed)
 {
 	const auto* m = static_cast<const McaMat*>(b.material.get());
+	if (!b.state) throw mca::Error("body " + std::to_string(b.id) + ": state is None; give it a McaState (material.newAssocState()).");
 	const State& s  = *b.state;
 	auto*        ms = castTo<McaState>(b.state.get());
 	if (!ms) throw mca::Error("body " + std::to_string(b.id) + " has material McaMat but not a McaState; make its state with material.newAssocState().");

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The end of the law's step: sums of the pair forces in a fixed order, energies.
+#include "McaBodies.hpp"
 #include "McaCast.hpp"
 #include "McaDensity.hpp"
+#include "McaGuarded.hpp"
 #include <pkg/common/Sphere.hpp>
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
@@ -59,14 +61,20 @@ namespace {
 
 void McaForces::action()
 {
-	for (const auto& e : scene->engines)
-		if (auto* d = dynamic_cast<McaDensity*>(e.get())) return d->addForces(scene);
-	throw mca::Error("McaForces: there is no McaDensity in O.engines; it must come before InteractionLoop.");
+	guarded([&] {
+		for (const auto& e : scene->engines)
+			if (auto* d = e && !e->dead ? dynamic_cast<McaDensity*>(e.get()) : nullptr) return d->addForces(scene);
+		throw mca::Error("McaForces: there is no McaDensity in O.engines, or it is dead; it must come before InteractionLoop.");
+	});
 }
 
 void McaDensity::addForces(Scene* scene)
 {
 	if (doneAt != scene->iter) throw mca::Error("McaForces: McaDensity has not run in this step; it must come before InteractionLoop and run in every step.");
+	if (const string error = McaPhys::takeError(); !error.empty()) throw mca::Error(error);
+	for (const Row& r : rows)
+		if (const auto& b = scene->bodies->body[size_t(r.id)]; !b || b->state.get() != r.state)
+			throw mca::Error("McaForces: body " + std::to_string(r.id) + " was erased or got another state between McaDensity and McaForces; put the engine that does it before McaDensity or after NewtonIntegrator.");
 	const auto& bodies = scene->bodies->body;
 	const long  n      = long(bodies.size());
 	vector<Sum> sums(bodies.size());
@@ -91,6 +99,7 @@ void McaDensity::addForces(Scene* scene)
 		scene->forces.addTorque(int(i), Vector3r(0, 0, s.torque));
 		if (size_t(i) >= place.size() || place[size_t(i)] < 0) continue;
 		const Row& r = rows[size_t(place[size_t(i)])];
+		r.l->moved   = scene->dt;
 		r.m->links   = __builtin_popcount(r.l->flags & mca::automata::linkBits);
 		if (r.material->eos.mieGrueneisen) { // the heat of the viscosity of links goes into the internal energy
 			r.m->dissipated += s.linkHeat * lastMove / (r.material->eos.rho0 * r.l->cell);
@@ -105,6 +114,9 @@ void McaDensity::addForces(Scene* scene)
 		viscous += lastViscous;
 		bookEnergies(scene);
 	}
+	members.clear();
+	for (const Row& r : rows)
+		members.push_back(r.id);
 	lastMove = scene->dt;
 	steps++;
 }
@@ -118,7 +130,7 @@ void McaDensity::stateEnergies(Scene& scene, Real& volumetric, Real& deviatoric,
 	vector<const McaMat*> seen;
 	vector<mca::Material> constants;
 	for (const auto& b : scene.bodies->body) {
-		auto* m = b ? castTo<McaState>(b->state.get()) : nullptr;
+		auto* m = isAutomaton(b) ? castTo<McaState>(b->state.get()) : nullptr;
 		if (!m || !m->law) continue;
 		const auto* mat = static_cast<const McaMat*>(b->material.get());
 		auto        it  = std::find(seen.begin(), seen.end(), mat);
@@ -148,19 +160,31 @@ void McaDensity::bookEnergies(Scene* scene)
 {
 	Real volumetric, deviatoric, kinetic, centre;
 	stateEnergies(*scene, volumetric, deviatoric, kinetic, centre);
-	const char* names[]  = { "mcaVolumetric", "mcaDeviatoric", "mcaPlastic", "mcaViscous", "mcaFriction", "mcaFracture", "mcaCoupling" };
-	const Real  values[] = { volumetric, deviatoric, plastic, viscous, frictional, fracture, coupling };
-	for (int k = 0; k < 7; k++)
+	const Real total = kinetic + centre + volumetric + deviatoric + plastic + viscous + frictional + fracture + coupling;
+	// bodies were added or erased since the last step: the sum is kept over a step, so what is missing or more is theirs
+	const bool changed = members.size() != rows.size() || !std::equal(rows.begin(), rows.end(), members.begin(), [](const Row& r, int id) { return r.id == id; });
+	if (changed && !members.empty() && bookedAt == scene->iter - 1) joined += total - lastTotal;
+	lastTotal = total, bookedAt = scene->iter;
+	const char* names[]  = { "mcaVolumetric", "mcaDeviatoric", "mcaPlastic", "mcaViscous", "mcaFriction", "mcaFracture", "mcaCoupling", "mcaJoined" };
+	const Real  values[] = { volumetric, deviatoric, plastic, viscous, frictional, fracture, coupling, -joined };
+	for (int k = 0; k < (joined != 0 ? 8 : 7); k++)
 		scene->energy->set(values[k], names[k], energyIndex[k]);
+}
+
+void McaDensity::refuseWhileRunning(const char* what) const
+{
+	if (Omega::instance().isRunning() && worker != std::this_thread::get_id())
+		throw std::runtime_error(string("McaDensity.") + what + "(): the simulation is running in the background and changes what is asked for; O.pause() and O.wait() first, or ask from a PyRunner.");
 }
 
 py::dict McaDensity::energies()
 {
+	refuseWhileRunning("energies");
 	Real volumetric, deviatoric, kinetic, centre;
 	stateEnergies(*Omega::instance().getScene(), volumetric, deviatoric, kinetic, centre);
 	py::dict d;
 	d["kinetic"] = kinetic, d["volumetric"] = volumetric, d["deviatoric"] = deviatoric, d["plastic"] = plastic, d["viscous"] = viscous, d["friction"] = frictional, d["fracture"] = fracture;
-	d["coupling"] = coupling, d["total"] = kinetic + centre + volumetric + deviatoric + plastic + viscous + frictional + fracture + coupling;
+	d["coupling"] = coupling, d["total"] = kinetic + centre + volumetric + deviatoric + plastic + viscous + frictional + fracture + coupling, d["joined"] = joined;
 	return d;
 }
 
@@ -173,6 +197,7 @@ py::dict McaDensity::counters() const
 
 py::list McaDensity::links() const
 {
+	refuseWhileRunning("links");
 	py::list out;
 	for (const auto& b : Omega::instance().getScene()->bodies->body)
 		if (b)

@@ -16,6 +16,19 @@ mca::Material McaMat::toMaterial() const
                 }
                 throw mca::Error("material '" + name + "': " + what + " = '" + value + "' is unknown; it must be one of " + list + ".");
 	};
+	// what the laws chosen do not use must be sound all the same: the next choice would use it
+	auto need = [&](const char* what, Real value, bool ok, const char* range) {
+		if (ok) return;
+		std::ostringstream s;
+		s << "material '" << name << "': " << what << " = " << value << " is not allowed; it must be " << range << ".";
+		throw mca::Error(s.str());
+	};
+	const auto notNegative = [](Real v) { return v >= 0 && std::isfinite(v); };
+	need("hugoniotSlope [-]", hugoniotSlope, notNegative(hugoniotSlope), "finite and not negative (0: linear law)");
+	need("hardeningModulus [Pa]", hardeningModulus, notNegative(hardeningModulus), "finite and not negative");
+	need("heatCapacity [J/kg/K]", heatCapacity, notNegative(heatCapacity), "finite and not negative (0: no heating)");
+	need("taylorQuinney [-]", taylorQuinney, taylorQuinney >= 0 && taylorQuinney <= 1, "from 0 to 1");
+	need("frictionAngle [rad]", frictionAngle, frictionAngle >= 0 && frictionAngle <= 1.57, "from 0 to 1.57, below pi/2");
 	mca::Material m;
 	const int     law   = pick("eos", eos, { "shockAdiabat", "linear", "mieGruneisen" });
 	m.eos.rho0          = density;
@@ -58,9 +71,47 @@ Real McaMat::yieldAt(Real eqps, Real rate, Real temperature) const
 
 Real McaMat::pressureAt(Real volumeRatio) const { return mca::pressure(toMaterial().eos, volumeRatio - 1.); }
 
-void McaMat::postLoad(McaMat&)
+shared_ptr<State> McaMat::newAssocState() const
+{
+	const shared_ptr<McaState> s(new McaState);
+	s->temperature = referenceTemperature;
+	return s;
+}
+
+bool McaMat::derive()
 {
 	const Real K = density * bulkSoundSpeed * bulkSoundSpeed, G = shearModulus;
-	if (K > 0 && G >= 0) young = 9. * K * G / (3. * K + G), poisson = (3. * K - 2. * G) / (2. * (3. * K + G));
+	if (!(K > 0 && G >= 0 && std::isfinite(K + G))) return false;
+	young = 9. * K * G / (3. * K + G), poisson = (3. * K - 2. * G) / (2. * (3. * K + G));
+	return true;
+}
+
+void McaMat::refuseElastic(const char* what, Real asked, Real derived) const
+{
+	if (std::fabs(asked - derived) <= 1e-9 * std::fabs(derived)) return; // a copy of what stands there
+	std::ostringstream s;
+	s << "McaMat" << (label.empty() ? "" : " '" + label + "'") << ": " << what << " = " << asked << " cannot be set: it follows from density, bulkSoundSpeed and shearModulus (";
+	(std::isfinite(derived) ? s << derived : s << "not all given yet") << "). Set those: G = E/(2(1+nu)), K = E/(3(1-2nu)) = density bulkSoundSpeed^2.";
+	throw std::invalid_argument(s.str());
+}
+
+// young and poisson among the keywords are compared with what the others give, once all are set
+void McaMat::pyHandleCustomCtorArgs(py::tuple&, py::dict& keywords)
+{
+	for (const char* name : { "young", "poisson" })
+		if (keywords.has_key(name)) {
+			asked[name] = py::extract<Real>(keywords[name]);
+			keywords[name].del();
+		}
+	if (!asked.empty() && py::len(keywords) == 0) postLoad(*this);
+}
+
+void McaMat::postLoad(McaMat&)
+{
+	const bool derived = derive();
+	const auto given   = std::move(asked);
+	asked.clear();
+	for (const auto& [name, value] : given)
+		refuseElastic(name.c_str(), value, derived ? (name == "young" ? young : poisson) : std::numeric_limits<Real>::quiet_NaN());
 }
 } // namespace yade

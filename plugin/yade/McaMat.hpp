@@ -3,6 +3,7 @@
 #include <core/State.hpp>
 #include <pkg/common/ElastMat.hpp>
 #include "kernels/material.hpp"
+#include <map>
 
 namespace yade {
 
@@ -24,6 +25,8 @@ public:
 		((Real, share, 0, Attr::readonly, "pressure share of rule (6), of contacts in the affine rule [N/m]"))
 		((int, rule, 0, Attr::readonly, "volume rule: 0 affine, 1 inversePower, 2 meanDistance"))
 		((Real, contactSum, 0, Attr::readonly, "volume terms of the contacts [-]"))
+		((Real, diameter, 0, Attr::readonly, "with which the automaton was taken in [m]"))
+		((Real, moved, 0, Attr::readonly, "time step that led to the present position [s]"))
 		((Real, criterion, 0, Attr::readonly, "largest fracture criterion over its limit [-]; a pair breaks at a mean of 1"))
 	)
 	// clang-format on
@@ -34,16 +37,16 @@ class McaState : public State {
 public:
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR(McaState, State, "State of an automaton. :yref:`McaEngine` fills it when it writes back to the bodies.",
-		((Real, pressure, 0, , "pressure, positive in compression [Pa]"))
-		((Real, volumeRatio, 1, , "J = volume / volume at rest [-]"))
-		((Real, equivalentStress, 0, , "Mises stress [Pa]"))
-		((Real, plasticStrain, 0, , "equivalent plastic strain [-]; read at the start as initial hardening"))
-		((Real, temperature, 298, , "temperature of the Johnson-Cook law [K]"))
-		((Real, stressZZ, 0, , "out-of-plane deviatoric stress [Pa]"))
-		((Real, dissipated, 0, , "internal energy per mass, kept for eos mieGruneisen [J/kg]"))
-		((Real, strength, 0, , "factor on the strengths of the material [-]; 0: drawn by the engine from the material's distribution and the engine's seed"))
-		((int, links, 0, , "links that hold [-]"))
-		((int, brokenLinks, 0, , "links that broke [-]"))
+		((Real, pressure, 0, , "pressure, positive in compression [Pa]; output"))
+		((Real, volumeRatio, 1, , "J = volume / volume at rest [-]; output"))
+		((Real, equivalentStress, 0, , "Mises stress [Pa]; output"))
+		((Real, plasticStrain, 0, , "equivalent plastic strain [-]; read at the start as initial hardening, by :yref:`McaDensity` in every step"))
+		((Real, temperature, 298, , "temperature of the Johnson-Cook law [K]; material.newAssocState() sets the reference temperature; :yref:`McaDensity` reads it at the start and in every step"))
+		((Real, stressZZ, 0, , "out-of-plane deviatoric stress [Pa]; output"))
+		((Real, dissipated, 0, , "internal energy per mass, kept for eos mieGruneisen [J/kg]; :yref:`McaDensity` reads it in every step"))
+		((Real, strength, 0, , "factor on the strengths of the material [-]; 0 when the automaton is taken in: drawn by the engine from the material's distribution and the engine's seed; :yref:`McaDensity` reads it in every step"))
+		((int, links, 0, , "links that hold [-]; output"))
+		((int, brokenLinks, 0, , "links that broke [-]; output"))
 		((shared_ptr<McaLawState>, law, , Attr::hidden, "what :yref:`McaDensity` keeps of the automaton; empty with McaEngine"))
 		,
 		createIndex();
@@ -55,7 +58,8 @@ REGISTER_SERIALIZABLE(McaState);
 
 class McaMat : public FrictMat {
 public:
-	shared_ptr<State> newAssocState() const override { return shared_ptr<State>(new McaState); }
+	/// A McaState of the reference temperature.
+	shared_ptr<State> newAssocState() const override;
 	bool              stateTypeOk(State* s) const override { return dynamic_cast<McaState*>(s) != nullptr; }
 	/// Constants for the solvers; throws mca::Error naming the constant that is out of range.
 	mca::Material toMaterial() const;
@@ -64,10 +68,20 @@ public:
 	Real          yieldAt(Real eqps, Real rate, Real temperature) const;
 	Real          pressureAt(Real volumeRatio) const;
 	void          postLoad(McaMat&);
+	void          pyHandleCustomCtorArgs(py::tuple& args, py::dict& keywords) override;
+	/// Sets young and poisson, which stock engines read, from the constants; false while those are not given yet.
+	bool derive();
+	Real youngNow() { return derive(), young; }
+	Real poissonNow() { return derive(), poisson; }
+	void setYoung(Real v) { derive(), refuseElastic("young [Pa]", v, young); }
+	void setPoisson(Real v) { derive(), refuseElastic("poisson [-]", v, poisson); }
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(McaMat, FrictMat,
 		"Material of automata and of the Lagrangian grid: shock-adiabat equation of state, plasticity, fracture, contact, viscosity. "
-		"Density [kg/m3] and frictionAngle [rad] are those of :yref:`FrictMat`; young and poisson are set from the constants below.",
+		"Density [kg/m3] and frictionAngle [rad] are those of :yref:`FrictMat`; young and poisson follow from the constants below and refuse other values. "
+		"All constants are checked before they are used: finite (infinite only where that means 'never') and in range; NaN is refused. "
+		":yref:`McaDensity` reads all of them in every step, so that a change between steps counts from the next one on, for links and contacts that exist as well; strengthSpread and "
+		"strengthDistribution are read when strengths are drawn, density moreover when an automaton is taken in.",
 		((Real, bulkSoundSpeed, 0, Attr::triggerPostLoad, "c0 of the shock adiabat D = c0 + b U [m/s]; bulk modulus K = density c0^2"))
 		((Real, hugoniotSlope, 0, , "b of the shock adiabat [-]; 0: linear"))
 		((Real, gruneisen, 0, , "Grueneisen parameter [-] for eos 'mieGruneisen'"))
@@ -96,6 +110,8 @@ public:
 		,
 		createIndex();
 		,
+		.add_property("young", &McaMat::youngNow, &McaMat::setYoung, "Young's modulus [Pa]; output: follows from density, bulkSoundSpeed and shearModulus, and another value is refused.")
+		.add_property("poisson", &McaMat::poissonNow, &McaMat::setPoisson, "Poisson's ratio [-]; output: follows from density, bulkSoundSpeed and shearModulus, and another value is refused.")
 		.add_property("cP", &McaMat::longitudinalSpeed, "Longitudinal wave speed at rest [m/s].")
 		.add_property("cS", &McaMat::shearSpeed, "Shear wave speed at rest [m/s].")
 		.def("flowStress", &McaMat::yieldAt, (py::arg("plasticStrain"), py::arg("rate") = 1., py::arg("temperature") = 298.), "Yield stress [Pa] at plastic strain [-], strain rate [1/s] and temperature [K] (Johnson and Cook 1983).")
@@ -103,6 +119,10 @@ public:
 	)
 	// clang-format on
 	REGISTER_CLASS_INDEX(McaMat, FrictMat);
+
+private:
+	std::map<string, Real> asked; ///< young and poisson given to the constructor
+	void                   refuseElastic(const char* what, Real asked, Real derived) const;
 };
 REGISTER_SERIALIZABLE(McaMat);
 } // namespace yade

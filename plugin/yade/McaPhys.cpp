@@ -2,8 +2,10 @@
 #include "McaPhys.hpp"
 #include "McaCast.hpp"
 #include "automata/solver.hpp"
+#include <atomic>
+#include <core/Omega.hpp>
 #include <core/Scene.hpp>
-#include <lib/base/Logging.hpp>
+#include <mutex>
 #include <pkg/common/Sphere.hpp>
 #include <pkg/dem/ScGeom.hpp>
 
@@ -13,6 +15,8 @@ YADE_PLUGIN((McaPhys)(Ip2_McaMat_McaMat_McaPhys)(Ip2_FrictMat_McaMat_McaPhys)(La
 using mca::Lattice;
 using mca::sqr;
 using mca::VolumeRule;
+
+bool McaPhys::linking = false;
 
 bool McaPhys::pushes(int side, Real r2) const { return r2 < mca::automata::touchShare * sqr(rest[side]) && rest[side] >= mca::automata::collapsed * d; }
 
@@ -38,51 +42,81 @@ namespace {
 	}
 	/// dx, dy from the first to the second body [m]
 	Vector2r between(const Body& a, const Body& b) { return Vector2r(b.state->se3.position[0] - a.state->se3.position[0], b.state->se3.position[1] - a.state->se3.position[1]); }
-
-	void makeWall(McaPhys& p, const McaMat& m, Real otherAngle, Real d)
+	/// The pair overlaps though it was apart a step ago: it was looked for too late, and would start without push.
+	void checkFound(const Scene& scene, const Body& a, const Body& b, Real d)
 	{
-		const Real K = m.density * sqr(m.bulkSoundSpeed), width = Lattice<2>::width(d);
-		p.wall     = true;
-		p.d        = d;
-		p.kn       = (K + m.shearModulus * (4. / 3.)) * width * 2. / d;
-		p.ks       = m.shearModulus * width * 2. / d;
-		p.friction = std::tan(std::min(m.frictionAngle, otherAngle));
+		const Vector2r x = between(a, b), v(b.state->vel[0] - a.state->vel[0], b.state->vel[1] - a.state->vel[1]);
+		if (a.iterBorn == scene.iter || b.iterBorn == scene.iter || !(x.norm() < d * (1. - 1e-9)) || (x - scene.dt * v).norm() < d) return;
+		std::ostringstream s;
+		s << "automata " << a.id << " and " << b.id << " were found only when they were " << x.norm() / d
+		  << " diameters apart. Contacts must be known before they begin: Bo1_Sphere_Aabb needs aabbEnlargeFactor=1.4 and Ig2_Sphere_Sphere_ScGeom interactionDetectionFactor=1.4 (scenes.law2Engines); "
+		     "bodies faster than 0.4 diameters per step need a smaller O.dt.";
+		McaPhys::leaveError(s.str());
 	}
+	std::mutex        errorLock;
+	string            firstError;
+	std::atomic<bool> anyError { false };
 } // namespace
 
+void McaPhys::leaveError(const string& what)
+{
+	const std::lock_guard<std::mutex> lock(errorLock);
+	if (!anyError) firstError = what;
+	anyError = true;
+}
+
+string McaPhys::takeError()
+{
+	if (!anyError) return "";
+	const std::lock_guard<std::mutex> lock(errorLock);
+	anyError = false;
+	return std::move(firstError);
+}
+
+void McaPhys::setWall(const McaMat& m, Real otherAngle, Real diameter)
+{
+	const Real K = m.density * sqr(m.bulkSoundSpeed), width = Lattice<2>::width(diameter);
+	wall         = true;
+	d            = diameter;
+	kn           = (K + m.shearModulus * (4. / 3.)) * width * 2. / d;
+	ks           = m.shearModulus * width * 2. / d;
+	friction     = std::tan(std::min(m.frictionAngle, otherAngle));
+}
+
+// The functors' own pointer to the scene is stale where McaDensity makes the first links of a loaded scene: InteractionLoop has not run yet.
 void Ip2_McaMat_McaMat_McaPhys::go(const shared_ptr<Material>& m1, const shared_ptr<Material>& m2, const shared_ptr<Interaction>& I)
 {
 	if (I->phys) return;
-	const Body &            A = *scene->bodies->body[I->getId1()], &B = *scene->bodies->body[I->getId2()];
-	const auto &            a = static_cast<const McaMat&>(*m1), &b = static_cast<const McaMat&>(*m2);
+	const Scene&              now = *Omega::instance().getScene();
+	const Body &              A = *now.bodies->body[size_t(I->getId1())], &B = *now.bodies->body[size_t(I->getId2())];
+	const auto *              sa = castTo<Sphere>(A.shape.get()), *sb = castTo<Sphere>(B.shape.get());
 	const shared_ptr<McaPhys> p(new McaPhys);
-	I->phys       = p;
-	const auto *sa = castTo<Sphere>(A.shape.get()), *sb = castTo<Sphere>(B.shape.get());
-	if (!lawState(A) || !lawState(B)) {
-		if (sa && sb) LOG_ERROR("automata " << A.id << " and " << B.id << ": McaDensity has not seen them; put it before InteractionLoop in O.engines.");
-		makeWall(*p, sa ? a : b, (sa ? b : a).frictionAngle, 2. * (sa ? sa : sb)->radius);
+	I->phys = p;
+	if (!sa || !sb) {
+		const auto &a = static_cast<const McaMat&>(*m1), &b = static_cast<const McaMat&>(*m2);
+		if (sa || sb) p->setWall(sa ? a : b, (sa ? b : a).frictionAngle, 2. * (sa ? sa : sb)->radius);
 		return;
 	}
 	const Real da = 2. * sa->radius, db = 2. * sb->radius;
-	p->d             = 0.5 * (da + db);
-	p->share         = da / (da + db);
-	p->twoG          = a.shearModulus > 0 && b.shearModulus > 0 ? 2. / (p->share / a.shearModulus + (1. - p->share) / b.shearModulus) : 0.;
-	p->friction      = std::min(std::tan(a.frictionAngle), std::tan(b.frictionAngle));
-	p->viscLinear    = std::min(a.viscosityLinear * a.density * a.bulkSoundSpeed, b.viscosityLinear * b.density * b.bulkSoundSpeed);
-	p->viscQuadratic = std::min(a.viscosityQuadratic * a.density, b.viscosityQuadratic * b.density);
-	const Vector2r x = between(A, B);
-	if (McaPhys::mayTouch(A, *lawState(A), B, *lawState(B))) p->startContact(x.norm());
+	p->d     = 0.5 * (da + db);
+	p->share = da / (da + db);
+	const auto *la = lawState(A), *lb = lawState(B);
+	if (!la || !lb || McaPhys::linking || !McaPhys::mayTouch(A, *la, B, *lb)) return; // McaDensity takes it from here, and gives the pair its constants
+	checkFound(now, A, B, p->d);
+	p->startContact(between(A, B).norm());
 }
 
+// The loop does not swap materials: it calls go() with the automaton first, too.
 void Ip2_FrictMat_McaMat_McaPhys::go(const shared_ptr<Material>& m1, const shared_ptr<Material>& m2, const shared_ptr<Interaction>& I)
 {
 	if (I->phys) return;
-	const Body &              A = *scene->bodies->body[I->getId1()], &B = *scene->bodies->body[I->getId2()];
-	const Body&               automaton = lawState(A) ? A : B;
+	const Scene&              now   = *Omega::instance().getScene();
+	const auto *              first = castTo<const McaMat>(m1.get()), *m = first ? first : castTo<const McaMat>(m2.get());
+	const Body&               automaton = *now.bodies->body[size_t(now.bodies->body[size_t(I->getId1())]->material.get() == m ? I->getId1() : I->getId2())];
 	const auto*               sphere    = castTo<Sphere>(automaton.shape.get());
 	const shared_ptr<McaPhys> p(new McaPhys);
 	I->phys = p;
-	makeWall(*p, static_cast<const McaMat&>(*m2), static_cast<const FrictMat&>(*m1).frictionAngle, sphere ? 2. * sphere->radius : 0.);
+	if (sphere) p->setWall(*m, static_cast<const FrictMat&>(first ? *m2 : *m1).frictionAngle, 2. * sphere->radius);
 }
 
 namespace {
@@ -111,7 +145,11 @@ namespace {
 
 bool Law2_ScGeom_McaPhys_Mca::go(shared_ptr<IGeom>& geom, shared_ptr<IPhys>& phys, Interaction* I)
 {
-	auto&       p = static_cast<McaPhys&>(*phys);
+	auto& p = static_cast<McaPhys&>(*phys);
+	if (!(range >= 1.1 && range <= 10)) {
+		McaPhys::leaveError("Law2_ScGeom_McaPhys_Mca: range = " + std::to_string(range) + " must be from 1.1 to 10.");
+		return true;
+	}
 	const Body &A = *scene->bodies->body[I->getId1()], &B = *scene->bodies->body[I->getId2()];
 	if (p.wall) return wallForce(static_cast<const ScGeom&>(*geom), p, A, B);
 

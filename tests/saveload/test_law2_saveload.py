@@ -40,6 +40,17 @@ def test_continuesBitIdentically(tmp_path, form):
 	assert "('brokenLinks', 0)" not in whole
 
 
+@pytest.mark.parametrize('form', ['yade.gz', 'xml'])
+def test_savedBeforeTheFirstStep(tmp_path, form):
+	"""Links are made in the first step, whether the scene was loaded by another process, by the same one, or not at all."""
+	process("build(); O.run(200, True); open('whole', 'w').write(digest())", tmp_path)
+	process("build(); O.save('new.%s'); O.load('new.%s'); O.run(200, True); open('same', 'w').write(digest())" % (form, form), tmp_path)
+	process("O.load('new.%s'); O.run(200, True); open('other', 'w').write(digest())" % form, tmp_path)
+	process("build(); O.saveTmp(); O.loadTmp(); O.run(100, True); O.saveTmp(); O.loadTmp(); O.run(100, True); open('tmp', 'w').write(digest())", tmp_path)
+	whole = (tmp_path / 'whole').read_text()
+	assert [(tmp_path / f).read_text() == whole for f in ('same', 'other', 'tmp')] == [True] * 3
+
+
 def test_sameBitsOnTwoThreads(tmp_path):
 	for n in 1, 2:
 		process("build(); O.run(400, True); open('t%d', 'w').write(digest())" % n, tmp_path, threads=n)
