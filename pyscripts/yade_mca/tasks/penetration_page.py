@@ -77,8 +77,8 @@ def losses(run, args, cases):
 	published = {k: cases[n + '/' + k].reference for k in ('lengthLoss', 'velocityLossTail') if n + '/' + k in cases}
 	if any(v is not None for v in published.values()): rows.append(('other', 'published, Chertov et al. 2004', published))
 	e = results.experiment()
-	if args.thickness == e['thickness'] and args.speed == 1520: rows.append(('other', 'experiment, Fomin and Gulidov 1999', dict(lengthLoss=e['lengthLoss'], velocityLossTail=e['velocityLoss'])))
-	t = results.tate(args.thickness, args.speed, args.rod_length)
+	if args.thickness == e['thickness'] and results.normal(args): rows.append(('other', 'experiment, Fomin and Gulidov 1999', dict(lengthLoss=e['lengthLoss'], velocityLossTail=e['velocityLoss'])))
+	t = results.tate(args.thickness, args.speed, args.rod_length, args.obliquity)
 	rows.append(('other', 'rod theory, Alekseevskii\u2013Tate', dict(lengthLoss=t['lengthLoss'], velocityLossTail=t['velocityLoss'])))
 	return table(['', *(escape(NAMES.get(k, k)).replace(', ', '<br>') for k in keys)], [(style, name, *(show(values.get(k)) for k in keys)) for style, name, values in rows])
 
@@ -157,7 +157,8 @@ def facts(run, args, report, wall):
 
 
 def title(args):
-	return '%g mm plate, %g \u00d7 %g mm rod, %g m/s' % (args.thickness, args.rod_diameter, args.rod_length, args.speed)
+	oblique = ', %g\u00b0 oblique' % args.obliquity if args.obliquity else ''
+	return '%g mm plate, %g \u00d7 %g mm rod, %g m/s%s' % (args.thickness, args.rod_diameter, args.rod_length, args.speed, oblique)
 
 
 def tiles(run):
