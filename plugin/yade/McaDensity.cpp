@@ -72,11 +72,6 @@ void McaDensity::checkResults()
 
 void McaDensity::step()
 {
-	guarded([&] { step(); });
-}
-
-void McaDensity::step()
-{
 	worker = std::this_thread::get_id();
 	McaPhys::takeError(); // of a step that another error has ended
 	checkOptions(*scene);
@@ -84,7 +79,10 @@ void McaDensity::step()
 	gather(scene);
 	unsettled.clear();
 	findLinks(scene);
+	if (doneAt == scene->iter && pushedAt == scene->iter && hasMoved()) doneAt = pushedAt = -1; // stopped behind NewtonIntegrator: the next step, though O.iter is the same
 	keepVolumes(scene);
+	for (Row& r : rows)
+		lastMotion(r);
 	if (doneAt != scene->iter) {
 		if (steps % automata::breakPeriod == 0) breakLinks();
 		findContacts(scene);
@@ -105,6 +103,8 @@ void McaDensity::step()
 			for (long i = 0; i < n; i++)
 				stress(rows[size_t(i)]);
 		}
+		for (const Row& r : rows)
+			r.l->results = Vector3r(r.m->pressure, r.m->volumeRatio, r.m->stressZZ);
 		if (scene->trackEnergy)
 			for (const Row& r : rows)
 				plastic += r.plastic, coupling += r.coupling, frictional += r.friction, heated += r.heated;

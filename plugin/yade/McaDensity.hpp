@@ -40,6 +40,7 @@ public:
 		((Real, dtLimit, std::numeric_limits<Real>::infinity(), Attr::readonly, "largest stable time step at the present state [s]; output"))
 		((int, stiffest, -1, Attr::readonly, "body that limits the time step; output"))
 		((Real, lastMove, 0, Attr::readonly, "time step that led to the present positions [s]; output"))
+		((long, pushedAt, -1, Attr::hidden, "O.iter whose forces were given to the bodies"))
 		((long, doneAt, -1, Attr::hidden, "O.iter whose stresses are computed: once only, also when something stops the step half-way"))
 		((Real, deepest, 1, Attr::readonly, "smallest distance of a pair over its rest distance seen [-]; output"))
 		((long, clamped, 0, Attr::readonly, "times the equation of state was beyond its clamp; output"))
@@ -82,6 +83,8 @@ public:
 		Side                 link[6];
 		int                  firstContact = 0, lastContact = 0; ///< in contacts, ascending ids
 		Real                 curvature = 0;                     ///< second difference of the volume
+		Vector3r             motion = Vector3r::Zero(); ///< velocity [m/s] and spin [rad/s] of the last move
+		bool                 fresh  = false;            ///< has made no move
 		// of this step
 		Real   limit = 0, stiff = 0, closing = 0, nearestLink = 1, nearestContact = 1;
 		bool   clampedNow = false, bad = false;
@@ -104,9 +107,10 @@ private:
 	vector<const McaMat*>      known;
 	long                       revision = 0; ///< grows when constants of pairs have changed
 	mca::VolumeRule            rule() const;
-	void                       step();
 	void                       forget();
 	void                       checkOptions(const Scene&) const;
+	void                       lastMotion(Row&) const;
+	bool                       hasMoved() const;
 	void                       checkEngines(const Scene&);
 	McaState&                  checkBody(const Scene&, const Body&) const;
 	void                       checkOther(const Body&) const;

@@ -137,6 +137,10 @@ void McaDensity::checkState(const Row& r) const
 	need("pressure", m.pressure, std::isfinite(m.pressure), "finite");
 	need("volumeRatio", m.volumeRatio, m.volumeRatio > 0 && std::isfinite(m.volumeRatio), "finite and above zero");
 	need("stressZZ", m.stressZZ, std::isfinite(m.stressZZ), "finite");
+	const auto result = [&](const char* name, Real value, Real was) {
+		if (l.moved > 0 && value != was) refuse("body ", r.id, ": state.", name, " was set to ", value, " (it was ", was, "); it is a result of the law and cannot be prescribed. Set it back.");
+	};
+	result("pressure", m.pressure, l.results[0]), result("volumeRatio", m.volumeRatio, l.results[1]), result("stressZZ", m.stressZZ, l.results[2]);
 }
 
 // The stock collider skips two bodies whose masks have no bit in common, and NewtonIntegrator those without a bit of its own mask.

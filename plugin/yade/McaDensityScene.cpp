@@ -59,7 +59,7 @@ namespace {
 // A scene of its own: nothing goes on from what this engine did before.
 void McaDensity::forget()
 {
-	filterTime = lastMove = 0, steps = brokenLinks = clamped = 0, doneAt = bookedAt = -1, deepest = 1;
+	filterTime = lastMove = 0, steps = brokenLinks = clamped = 0, doneAt = bookedAt = pushedAt = -1, deepest = 1;
 	plastic = viscous = lastViscous = frictional = fracture = coupling = heated = joined = 0;
 	members.clear();
 }
@@ -242,6 +242,42 @@ void McaDensity::keepVolumes(Scene* scene)
 	}
 	relinked.clear();
 	if (doneAt == scene->iter) doneAt = -1, lastMove = 0; // a step that was stopped half-way: its strain is in the stresses, pressures are not those of the links now
+}
+
+namespace {
+	Vector3r placeOf(const State& s) { return Vector3r(s.se3.position[0], s.se3.position[1], 2. * std::atan2(s.se3.orientation.z(), s.se3.orientation.w())); }
+	/// From one place to another, the shorter way round.
+	Vector3r way(const Vector3r& from, const Vector3r& to) { return Vector3r(to[0] - from[0], to[1] - from[1], std::remainder(to[2] - from[2], 2. * M_PI)); }
+}
+
+/// NewtonIntegrator has moved the bodies since they got the forces of this step.
+bool McaDensity::hasMoved() const
+{
+	return std::any_of(rows.begin(), rows.end(), [&](const Row& r) { // not a script
+		const Vector3r meant = r.l->expected * lastMove;
+		return meant != Vector3r::Zero() && (way(r.l->from, placeOf(*r.state)) - meant).norm() <= 1e-6 * meant.norm();
+	});
+}
+
+/// The velocity with which the last move was made. It is that of the state unless a script has set another one since, or another place.
+void McaDensity::lastMotion(Row& r) const
+{
+	const State&       s = *r.state;
+	const McaLawState& l = *r.l;
+	r.motion = Vector3r(s.vel[0], s.vel[1], s.angVel[2]);
+	r.fresh  = !(l.moved > 0);
+	if (r.fresh || !(lastMove > 0)) return;
+	const Vector3r at = placeOf(s), made = way(l.from, at) / lastMove;
+	const auto     part = [&](int first, int n) { // both components of the velocity, or the spin
+		const auto norm  = [&](const Vector3r& a) { return a.segment(first, n).norm(); };
+		const Real round = 1e-15 * (norm(at) + 1e-3 * r.d) / lastMove;
+		const auto same  = [&](const Vector3r& a, const Vector3r& b, Real share) { return norm(a - b) <= share * (norm(a) + norm(b)) + round; };
+		if (same(made, r.motion, 1e-9) || same(r.motion, l.expected, 1e-6)) return; // as always, or put elsewhere with the velocity it had
+		const Vector3r& other = same(made, l.expected, 1e-6) ? made : l.expected; // the place was set as well
+		r.motion.segment(first, n) = other.segment(first, n);
+	};
+	part(0, 2);
+	part(2, 1);
 }
 
 void McaDensity::findContacts(Scene* scene)

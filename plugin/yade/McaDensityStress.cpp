@@ -119,8 +119,8 @@ void McaDensity::stress(Row& r)
 	const auto trial = [&](const Side& s, Real twoG) { // this side's stresses before yield; returns dtheta of the pair
 		const Row&     o = rows[size_t(s.other)];
 		const Vector2r x = vectorTo(*r.state, *o.state);
-		const Real     q = s.side ? 1. - s.p->share : s.p->share, spin = (r.state->angVel[2] * q + o.state->angVel[2] * (1. - q)) * dt;
-		const auto     e = mca::strainIncrement(x[0], x[1], (o.state->vel[0] - r.state->vel[0]) * dt, (o.state->vel[1] - r.state->vel[1]) * dt, spin);
+		const Real     q = s.side ? 1. - s.p->share : s.p->share, on = r.fresh || o.fresh ? 0. : dt, spin = (r.motion[2] * q + o.motion[2] * (1. - q)) * on;
+		const auto     e = mca::strainIncrement(x[0], x[1], (o.motion[0] - r.motion[0]) * on, (o.motion[1] - r.motion[1]) * on, spin);
 		const Real     dth   = (l.dTheta + o.l->dTheta) * (1. / 6.);
 		s.p->s[s.side]       = fma(twoG, e.normal - dth, s.p->s[s.side] * perOldJ);
 		s.p->tau[s.side]     = fma(twoG, e.shear, s.p->tau[s.side] * perOldJ);

@@ -311,10 +311,15 @@ void McaEngine::adoptChanges(Scene* scene)
 	rebuild |= !sameMaterials();
 	apply(list);
 	if (!set && !rebuild) return;
-	if (!forcesReady) solver->computeForces(); // the strain of the last step belongs to those that made it
+	// The strain of the last step belongs to those that made it. Where bodies were only erased it goes on with those that are left.
+	std::unordered_set<const Body*> mine;
+	for (const auto& b : bodies)
+		mine.insert(b.get());
+	const bool joined = std::any_of(scene->bodies->body.begin(), scene->bodies->body.end(), [&](const shared_ptr<Body>& b) { return isAutomaton(b) && !mine.count(b.get()); });
+	if ((joined || rebuild) && !forcesReady) solver->computeForces();
 	if (stale) writeBodies(scene);             // the others are gathered from what they hold
 	gather(scene);
-	if (solver->counters.steps > 0) solver->moved();
+	if (joined || rebuild) solver->moved();
 }
 
 void McaEngine::writeBodies(Scene* scene)

@@ -100,7 +100,6 @@ void McaDensity::addForces(Scene* scene)
 		if (size_t(i) >= place.size() || place[size_t(i)] < 0) continue;
 		const Row& r = rows[size_t(place[size_t(i)])];
 		r.l->moved   = scene->dt;
-		r.m->links   = __builtin_popcount(r.l->flags & mca::automata::linkBits);
 		if (r.material->eos.mieGrueneisen) { // the heat of the viscosity of links goes into the internal energy
 			r.m->dissipated += s.linkHeat * lastMove / (r.material->eos.rho0 * r.l->cell);
 			if (scene->trackEnergy) heated += s.linkHeat * lastMove;
@@ -115,10 +114,19 @@ void McaDensity::addForces(Scene* scene)
 		bookEnergies(scene);
 	}
 	members.clear();
-	for (const Row& r : rows)
+	scene->forces.sync();
+	for (const Row& r : rows) {
 		members.push_back(r.id);
+		r.m->links = __builtin_popcount(r.l->flags & mca::automata::linkBits);
+		const State&    s = *r.state;
+		const Vector3r &f = scene->forces.getForce(r.id), &t = scene->forces.getTorque(r.id);
+		const auto      free = [&](unsigned dof) { return s.blockedDOFs & dof ? 0. : scene->dt; };
+		r.l->from     = Vector3r(s.se3.position[0], s.se3.position[1], 2. * std::atan2(s.se3.orientation.z(), s.se3.orientation.w()));
+		r.l->expected = Vector3r(s.vel[0] + free(State::DOF_X) * f[0] / s.mass, s.vel[1] + free(State::DOF_Y) * f[1] / s.mass, s.angVel[2] + (s.inertia[2] > 0 ? free(State::DOF_RZ) * t[2] / s.inertia[2] : 0.));
+	}
 	lastMove = scene->dt;
-	steps++;
+	if (pushedAt != scene->iter) steps++; // not twice when something has stopped the step before NewtonIntegrator
+	pushedAt = scene->iter;
 }
 
 // State energies: volume and deviator of all automata [J/m].

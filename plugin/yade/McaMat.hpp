@@ -27,6 +27,9 @@ public:
 		((Real, contactSum, 0, Attr::readonly, "volume terms of the contacts [-]"))
 		((Real, diameter, 0, Attr::readonly, "with which the automaton was taken in [m]"))
 		((Real, moved, 0, Attr::readonly, "time step that led to the present position [s]"))
+		((Vector3r, from, Vector3r::Zero(), Attr::readonly, "position x, y [m] and turned angle [rad] before the last move"))
+		((Vector3r, expected, Vector3r::Zero(), Attr::readonly, "velocity x, y [m/s] and spin [rad/s] that the last move should have: another one was set by a script"))
+		((Vector3r, results, Vector3r(0, 1, 0), Attr::readonly, "pressure [Pa], volume ratio [-] and stressZZ [Pa] as the law has left them"))
 		((Real, criterion, 0, Attr::readonly, "largest fracture criterion over its limit [-]; a pair breaks at a mean of 1"))
 	)
 	// clang-format on

@@ -117,7 +117,7 @@ def test_tablesNodesAndForces(plugin):
         (lambda e, m: e.addRectangle(None, [0, 1], [0, 1]), 'unknown material'),
         (lambda e, m: e.fix(0, 'north'), "side 'north'"),
         (lambda e, m: e.fix(3, 'left'), 'no block 3'),
-        (lambda e, m: e.view(0, 'colour'), "no view 'colour'"),
+        (lambda e, m: e.view(0, 'colour'), "what = 'colour' is unknown"),
         (lambda e, m: e.view(0, 'temperature'), 'does not keep'),
         (lambda e, m: e.pressure(0, 'top', ([0, 1], [1])), '2 times and 1 values'),
         (lambda e, m: e.pressure(0, 'top', float('nan')), 'not finite'),
