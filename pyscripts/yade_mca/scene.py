@@ -7,6 +7,7 @@ import numpy as np
 
 from ._yade import scene as omega
 from ._yade import yadeClass
+from ._arguments import LARGEST
 from .packings import addBodies
 
 __all__ = ['Scene', 'SceneError']
@@ -34,14 +35,20 @@ class Scene:
 
 	def field(self, part, name):
 		"""Quantity `name` of McaEngine.field() for the automata of `part`, in the order of ids[part]."""
-		return self.automata.field(name)[np.searchsorted(self.automata.ids, self.ids[part])]
+		return self.automata.field(name)[np.searchsorted(self.automata.ids, self.idsOf(part))]
+
+	def idsOf(self, part):
+		"""Body ids of `part`. Raises SceneError when there is no such part."""
+		if not isinstance(part, str) or part not in self.ids: raise SceneError('part must be one of %s; got %r' % (', '.join(map(repr, self.ids)), part))
+		return self.ids[part]
 
 	def vectors(self, part, x, y):
 		"""Two quantities as columns, e.g. vectors('rod', 'vx', 'vy')."""
 		return np.stack((self.field(part, x), self.field(part, y)), axis=1)
 
 	def add(self, part, packing, material, **options):
-		"""Adds bodies under the name `part`; see packings.addBodies."""
+		"""Adds bodies under the name `part` (text); see packings.addBodies."""
+		if not isinstance(part, str) or not part: raise SceneError('part must be a name that is not empty; got %r' % (part, ))
 		self.ids[part], self.packings[part] = np.array(addBodies(packing, material, **options)), packing
 		return self.ids[part]
 
@@ -53,6 +60,7 @@ class Scene:
 
 def start(engineOptions=None):
 	"""An empty Scene whose McaEngine, with these attributes, is the only engine of O."""
+	if engineOptions is not None and not isinstance(engineOptions, dict): raise SceneError("engineOptions must be None or a dict of McaEngine's attributes; got %r" % (engineOptions, ))
 	s = Scene(automata=yadeClass('McaEngine')(**(engineOptions or {})))
 	omega().engines = [s.automata]
 	return s
@@ -67,7 +75,7 @@ def _isNumber(v):
 
 def positive(**values):
 	for name, v in values.items():
-		if not (_isNumber(v) and 0 < v < math.inf):
+		if not (_isNumber(v) and 0 < v <= LARGEST):
 			raise SceneError('%s must be above 0 and finite; got %r' % (name, v))
 
 

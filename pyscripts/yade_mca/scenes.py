@@ -15,6 +15,7 @@ import numpy as np
 from . import measure, packings
 from ._yade import scene as omega
 from ._yade import yadeClass
+from ._arguments import array
 from .packings import Rectangle, hexagonal
 from .scene import PITCH, PLATE, ROD, Scene, SceneError, affordable, oneOf, positive, start, subsonic, within
 from .tied_plate import gradedLines, leaning, plateGeometry, tiedPlate
@@ -33,11 +34,13 @@ def law2Engines(volumeRule='affine', stepFactor=None, **newton):
 	volumeRule: of McaDensity. stepFactor: share of the largest stable time step for a McaTimeStepper; None: the script sets O.dt [s].
 	newton: attributes of NewtonIntegrator, e.g. gravity=(0, -9.81, 0) [m/s2].
 	"""
+	oneOf('volumeRule', volumeRule, ('affine', 'inversePower', 'meanDistance'))
+	if stepFactor is not None: within('stepFactor', stepFactor, 0., 1., openLow=True)
 	make = lambda name, *a, **k: yadeClass(name)(*a, **k)
 	bounds = [make('Bo1_Sphere_Aabb', aabbEnlargeFactor=1.4), make('Bo1_Facet_Aabb'), make('Bo1_Wall_Aabb'), make('Bo1_Box_Aabb')]
 	geometry = [make('Ig2_Sphere_Sphere_ScGeom', interactionDetectionFactor=1.4), make('Ig2_Facet_Sphere_ScGeom'), make('Ig2_Wall_Sphere_ScGeom'), make('Ig2_Box_Sphere_ScGeom')]
 	laws = [make('Ip2_McaMat_McaMat_McaPhys'), make('Ip2_FrictMat_McaMat_McaPhys')], [make('Law2_ScGeom_McaPhys_Mca')]
-	stepper = [make('McaTimeStepper', factor=stepFactor)] if stepFactor else []
+	stepper = [make('McaTimeStepper', factor=stepFactor)] if stepFactor is not None else []
 	return [make('ForceResetter'), make('InsertionSortCollider', bounds), *stepper, make('McaDensity', volumeRule=volumeRule), make('InteractionLoop', geometry, *laws),
 	        make('McaForces'), make('NewtonIntegrator', damping=0, **newton)]
 
@@ -50,8 +53,8 @@ def bar(material, length, height, spacing, velocity=(0., 0.), angle=0., engineOp
 	positive(length=length, height=height, spacing=spacing)
 	within('angle', angle, -2 * math.pi, 2 * math.pi, 'rad')
 	affordable(spacing, (length, height))
-	subsonic('velocity', float(np.abs(np.asarray(velocity, float)).max()), material)
 	body = hexagonal(spacing, Rectangle((0, 0), (length, height)), angle=angle)
+	subsonic('velocity', float(np.abs(array('velocity', velocity, SceneError, ((2, ), (len(body), 2)))).max()), material)
 	s = start(engineOptions)
 	s.add('bar', body, material, velocity=velocity)
 	return s
@@ -67,7 +70,9 @@ def _front(u, w, reach):
 
 def touchDown(upper, lower, direction=(0., -1.)):
 	"""Packing `upper` moved along `direction` (or back) until its foremost automata just touch those of `lower` (no overlap). Raises SceneError."""
-	n = np.asarray(direction, float) / np.hypot(*direction)
+	n = array('direction', direction, SceneError, (2, ))
+	if not n.any(): raise SceneError('direction must not be (0, 0)')
+	n = n / np.hypot(*n)
 	reach = upper.radius + lower.radius
 	frame = lambda p: (p @ (-n[1], n[0]), p @ -n)  # across the flight, and back along it
 	(au, aw), (bu, bw) = frame(upper.positions), frame(lower.positions)
@@ -187,7 +192,7 @@ def penetration(thickness=25e-3, spacing=1e-3, speed=1520., mode='coupled', ends
 		raise SceneError('spallStrength must be two numbers [Pa], of rod and plate; got %r' % (spallStrength, ))
 	for x in spallStrength:
 		within('spallStrength', x, 0., math.inf, 'Pa', openLow=True)
-	ends = ends or ('fixed' if mode == 'coupled' else 'viscous')
+	if ends is None: ends = 'fixed' if mode == 'coupled' else 'viscous'
 
 	def material(x, spall):
 		if not isinstance(x, (str, Material)):
@@ -198,6 +203,7 @@ def penetration(thickness=25e-3, spacing=1e-3, speed=1520., mode='coupled', ends
 		return mcaMat(m, **dict(constants, **({} if friction is None else dict(frictionAngle=math.atan(friction)))))
 
 	rodMat, plateMat = material(rod, spallStrength[0]), material(plate, spallStrength[1])
+	if engineOptions is not None and not isinstance(engineOptions, dict): start(engineOptions)  # refuses it
 	options = dict(dict(seed=seed, account=account), **(engineOptions or {}))
 	dtFactor = options.get('dtFactor', dtFactor)
 	s = tiedPlate(plateMat, thickness, spacing, automataWidth, plateWidth, mode, ends, dtFactor=dtFactor, angle=angle, engineOptions=options)

@@ -12,7 +12,7 @@ from . import packings
 from ._yade import scene as omega
 from ._yade import yadeClass
 from .packings import Polygon, Rectangle, hexagonal
-from .scene import PITCH, PLATE, SceneError, affordable, oneOf, positive, start, within
+from .scene import PITCH, PLATE, Scene, SceneError, affordable, oneOf, positive, start, within
 
 __all__ = ['gradedLines', 'leaning', 'tiedPlate']
 
@@ -29,7 +29,8 @@ def gradedLines(start, end, first, growth=1.1, largest=None):
 	for name, v in (('start', start), ('end', end)):
 		within(name, v, -1e9, 1e9, 'm')
 	positive(first=first, growth=growth)
-	distance, largest = abs(end - start), largest or math.inf
+	if largest is not None: within('largest', largest, 0., math.inf, 'm', openLow=True)
+	distance, largest = abs(end - start), math.inf if largest is None else float(largest)
 	if not (1 <= growth <= 2 and largest >= first):
 		raise SceneError('growth must be from 1 to 2 and largest at least first; got %r, %r, %r' % (growth, largest, first))
 	cells = lambda n, q: np.minimum(first * q**np.minimum(np.arange(n), 1000), largest)
@@ -132,6 +133,7 @@ def tiedPlate(material, thickness, spacing, automataWidth=80e-3, plateWidth=120e
 	          Coupled, the interface runs along the close-packed row nearest to the normal and leans by up to 30 degrees.
 	thickness must be a whole number of spacings: at angle 0 the tied column then has the nodes of the grid. Raises SceneError.
 	"""
+	if scene is not None and not isinstance(scene, Scene): raise SceneError('scene must be None or a Scene, as start() makes one; got %r' % (scene, ))
 	within('growth', growth, 1., 2.)
 	within('largest', largest, 1., 1e6)
 	within('dtFactor', dtFactor, 0., 1., openLow=True)
@@ -140,7 +142,7 @@ def tiedPlate(material, thickness, spacing, automataWidth=80e-3, plateWidth=120e
 	coupled = mode == 'coupled'
 	lines = gradedLines(half, 0.5 * plateWidth, spacing, growth, largest * spacing) if coupled else None
 	plate = _platePacking(spacing, thickness, half, lean, coupled)
-	s = scene or start(engineOptions)
+	s = start(engineOptions) if scene is None else scene
 	s.automata.dtFactor = dtFactor
 	m = packings._material(material)
 	s.add('plate', plate, m, mask=mask)

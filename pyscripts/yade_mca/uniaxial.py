@@ -9,8 +9,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from ._arguments import number
 from .packings import Rectangle, hexagonal
-from .scene import PITCH, PLATE, ROD, SceneError, affordable, oneOf, positive, start, subsonic
+from .scene import MOST, PITCH, PLATE, ROD, SceneError, affordable, oneOf, positive, start, subsonic, within
 
 __all__ = ['addStrip', 'driveEnd', 'middle', 'plateImpact', 'profile', 'strip']
 
@@ -30,10 +31,13 @@ def strip(spacing, begin, length, rows, angle=0.):
 	Strips that follow each other (length a whole number of spacings when angle = 0) have one lattice.
 	"""
 	positive(spacing=spacing, length=length)
+	within('begin', begin, -1e6 * length, 1e6 * length, 'm')
+	within('angle', angle, 0., math.pi, 'rad')
 	along = angle == 0
 	if not (along or abs(angle - 0.5 * math.pi) < 1e-12):
 		raise SceneError('angle of a strip must be 0 or pi/2; got %r' % angle)
-	if not (rows >= 2 and rows % 2 == 0):
+	within('rows', rows, 2, MOST)
+	if rows % 2 != 0:
 		raise SceneError('rows of a strip must be even and at least 2; got %r' % rows)
 	d, half = spacing, 0.5 * rows * spacing * (PITCH if along else 1.)
 	affordable(d, (length, 2 * half))
@@ -59,8 +63,10 @@ def addStrip(s, part, packing, material, **options):
 def driveEnd(s, part, vx):
 	"""The columns within one spacing of the left end of `part` move with vx [m/s] from now on, as a piston; returns their ids."""
 	from ._yade import scene as omega
+	ids = s.idsOf(part)
+	vx = number('vx', vx, SceneError, unit=' m/s')
 	x = s.packings[part].positions[:, 0]
-	ids = s.ids[part][x < x.min() + 1.1 * s.packings[part].spacing]
+	ids = ids[x < x.min() + 1.1 * s.packings[part].spacing]
 	s.block(ids, 'xyZ')
 	for i in ids.tolist():
 		omega().bodies[i].state.vel = (vx, 0., 0.)
@@ -75,6 +81,7 @@ def middle(packing):
 
 def profile(s, part, *names):
 	"""x [m] and fields of the middle half of a strip, means over the height in columns of one spacing of material, from left to right: list of arrays."""
+	s.idsOf(part)  # there is such a part
 	p = s.packings[part]
 	keep = middle(p)
 	x = p.positions[keep, 0]

@@ -25,7 +25,8 @@ HERE = Path(__file__).resolve().parent
 LIMIT = 10., 90.  #: longest silence of the process that makes the calls [s]: by its own clock (a loop), by the clock on the wall (a lock)
 #: what must not happen
 FAULTS = ('crash', 'hang', 'silent', 'moved', 'poor', 'broken')
-#: at moments other than the first two only these kinds are tried, unless in the study
+#: kinds that are tried before the first step only, and those that are tried at all moments; the study tries all at all
+TYPES = ('text', 'texts', 'none', 'list', 'empty', 'complex', 'class', 'hugeInt', 'long', 'dict', 'number', 'short', 'wide', 'nested', 'cube', 'half')
 FEW = ('nan', 'nonsense', 'fresh')
 Call = collections.namedtuple('Call', 'name key kind moment run')
 
@@ -80,23 +81,26 @@ def positions():
 	return repr(out)
 
 
-RANGE = re.compile(r"\d|must|allowed|one of|known are|there are|remedy|instead|finite|make |set |give |use |call ", re.I)
+RANGE = re.compile(r"\d|must|allowed|one of|known are|there are|remedy|instead|finite|\b(make|set|give|use|call|take|add|put|name)\b", re.I)
 WHERE = re.compile(r"\bMca\w+|\bbody|\bbodies|material '|automat|block|packing|scene|O\.\w+|\bgrid\b", re.I)
 
 
-def poor(error, names, where=True):
-	"""What the message of a refusal lacks, or ''. Boost.Python's own refusal of a type is taken as it is: it stands at the line that sets."""
+def poor(error, names, where=()):
+	"""What the message of a refusal lacks, or ''. Boost.Python's own refusal of a type is taken as it is: it stands at the line that sets.
+
+	names: words for what; where: words that say where, besides those of WHERE.
+	"""
 	text = str(error)
 	if type(error).__name__ == 'ArgumentError' or isinstance(error, (AttributeError, OverflowError)) or 'No registered converter' in text: return ''
 	lacks = []
 	if not any(n.lower() in text.lower() for n in names): lacks.append('what')
-	if where and not WHERE.search(text): lacks.append('where')
+	if not WHERE.search(text) and not any(w.lower() in text.lower() for w in where): lacks.append('where')
 	if not RANGE.search(text): lacks.append('allowed or remedy')
 	return ', '.join(lacks)
 
 
-def attempt(act, after, names, accepted, moment):
-	"""(verdict, text): `act` makes the call, `after` the steps that follow."""
+def attempt(act, after, names, accepted, moment, inCall=()):
+	"""(verdict, text): `act` makes the call, `after` the steps that follow; inCall: words for the method that is called."""
 	where = None
 	try:
 		act()
@@ -104,7 +108,7 @@ def attempt(act, after, names, accepted, moment):
 		after()
 	except Exception as e:
 		text = '%s: %s' % (type(e).__name__, e)
-		lacks = poor(e, names)
+		lacks = poor(e, names, inCall)
 		if where is not None and positions() != where: return 'moved', text
 		return ('poor', 'lacks %s: %s' % (lacks, text)) if lacks and not accepted else ('refused', text)
 	return ('accepted' if accepted else 'silent'), ''
@@ -123,6 +127,7 @@ class Calls:
 		import every_call_scenes as scenes
 		self.cls, (self.sceneName, self.build, self.find), self.moment, self.study = cls, scene, moment, study
 		self.enter = scenes.MOMENTS[moment]
+		self.refusals = {}  # of methods with right arguments, at this moment
 		self.fails = None  # whether the steps fail without any call at this moment
 
 	def label(self, what, kind): return '%s = %s | %s, %s' % (what, kind, self.sceneName, self.moment)
@@ -146,10 +151,12 @@ class Calls:
 		self.fails = ''
 		return 'accepted', ''
 
-	def judged(self, act, after, key, kind):
-		"""At a moment whose steps fail anyway only a crash can be told from right."""
+	def judged(self, act, after, key, kind, atThisMoment=None):
+		"""At a moment whose steps fail anyway only a crash can be told from right. atThisMoment: refusal of right arguments as well."""
 		if self.fails is None: self.baseline(), self.start()
-		verdict, text = attempt(act, after, names(key), table.accepted(key, kind, self.moment), self.moment)
+		method = re.findall('[A-Z]?[a-z]+', key.split('(')[0].split('.')[1]) if '(' in key else ()
+		verdict, text = attempt(act, after, names(key), table.accepted(key, kind, self.moment), self.moment, method)
+		if verdict == 'poor' and atThisMoment and atThisMoment in text: verdict = 'refused'
 		return ('refused' if self.fails and verdict in ('silent', 'poor', 'moved') else verdict), text
 
 	def attribute(self, owner, name, kind, value):
@@ -174,9 +181,15 @@ class Calls:
 	def method(self, key, name, good, argument, kind, value):
 		def run():
 			thing, after = self.start()
-			if callable(good): given = dict(good(thing))
-			else: given = dict(good)
+			given = dict(good(thing))
 			if argument is not None: given[argument] = value
+			if argument is not None and self.moment != 'before' and key not in self.refusals:
+				try:
+					getattr(thing, name)(**(good(thing)))
+					self.refusals[key] = None
+				except Exception as e:
+					self.refusals[key] = str(e)
+				thing, after = self.start()
 			if argument is None:  # right arguments: may be refused at a bad moment, not at the first
 				try:
 					getattr(thing, name)(**given)
@@ -188,14 +201,14 @@ class Calls:
 				except Exception as e:
 					return ('refused' if self.fails is None or self.fails else 'broken'), '%s: %s' % (type(e).__name__, e)
 				return 'accepted', ''
-			return self.judged(lambda: getattr(thing, name)(**given), after, '%s(%s)' % (key, argument), kind)
+			return self.judged(lambda: getattr(thing, name)(**given), after, '%s(%s)' % (key, argument), kind, self.refusals.get(key))
 
 		return run
 
 	def wanted(self, kind, key):
 		if self.study: return True
 		if table.ACCEPTED.get(key, ('', ))[0] == table.ALL: return self.moment == 'before'
-		return self.moment in ('before', 'between') or kind in FEW
+		return self.moment == 'before' or kind in FEW or self.moment == 'between' and kind not in TYPES
 
 	def all(self):
 		call = lambda what, key, kind, run: Call(self.label(what, kind), key, kind, self.moment, run)
@@ -294,12 +307,13 @@ def run(study=False, only='', report=None):
 	results = []
 	with tempfile.TemporaryDirectory() as folder:
 		while todo:
+			now, later = todo[:3000], todo[3000:]  # a process holds on to what its scenes leave behind
 			journal = Path(folder) / ('journal%d' % todo[0])
 			sys.stdout.flush()
 			process = os.fork()
 			if process == 0:
 				try:
-					make(calls, todo, journal)
+					make(calls, now, journal)
 				finally:
 					os._exit(1)
 			how, text = follow(process, journal)
@@ -310,7 +324,7 @@ def run(study=False, only='', report=None):
 			for k, entry in done.items():
 				if 'verdict' not in entry: entry.update(verdict=how, text=text)
 				results.append(dict(entry, name=calls[k].name, key=calls[k].key, kind=calls[k].kind, moment=calls[k].moment))
-			todo = todo[len(done):]
+			todo = now[len(done):] + later
 			if how in ('crash', 'hang') and results and results[-1]['kind'] == 'nothing':  # nothing else can be told from this there
 				group = results[-1]['name'].split(' = ')[0], results[-1]['name'].split(' | ')[1]
 				todo = [k for k in todo if (calls[k].name.split('.')[0], calls[k].name.split(' | ')[1]) != group]

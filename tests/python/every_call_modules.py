@@ -38,6 +38,11 @@ def penetrationScene():
 	return scenes.penetration(**{k: v for k, v in argumentsOf('scenes.penetration').items()})
 
 
+def strips():
+	from yade_mca import scenes
+	return scenes.plateImpact('4340', '4340', 4 * D, 4 * D, 6 * D, D, 50.)
+
+
 #: right arguments by name; functions make fresh ones. Where a name means different things: 'module.function.name'
 GOOD = {
         'd': D, 'spacing': D, 'outline': rectangle, 'angle': 0., 'origin': (0., 0.), 'rim': 'cells', 'minWeight': 0.2, 'dim': None, 'packing': packing, 'material': '4340', 'velocity': (1., 0.),
@@ -48,8 +53,8 @@ GOOD = {
         'volumeRule': 'affine', 'stepFactor': 0.4, 'length': 5 * D, 'height': 3 * D, 'upper': packing, 'lower': packing, 'flyer': '4340', 'target': '4340', 'flyerThickness': 3 * D,
         'targetThickness': 3 * D, 'speed': 50., 'lateral': 'fixed', 'diameter': 3 * D, 'friction': 0.1, 'engineOptions': None, 'start': 0., 'end': 10 * D, 'first': D, 'growth': 1.1, 'largest': 3 * D,
         'thickness': 3 * D, 'automataWidth': 8 * D, 'plateWidth': 20 * D, 'mode': 'coupled', 'ends': 'fixed', 'scene': None, 'dtFactor': 0.4, 'rodLength': 4 * D, 'rodDiameter': 3 * D, 'rod': 'WHA_JC',
-        'plate': '4340', 'fractureStrain': 1., 'spallStrength': (3e9, 3e9), 'strengthSpread': 0.05, 'eos': 'shockAdiabat', 'viscosity': 1., 'seed': 1, 's': penetrationScene, 'part': 'rod',
-        'measure.rodMeasure.velocity': [(0., -90.), (0., -80.)], 'measure.speedAlong.velocity': [(0., -90.), (0., -80.)], 'packings.cellGeometry.name': 'hexagonal',
+        'plate': '4340', 'fractureStrain': 1., 'spallStrength': (3e9, 3e9), 'strengthSpread': 0.05, 'eos': 'shockAdiabat', 'viscosity': 1., 'seed': 1, 'part': 'rod', 'normal': (0., -1.), 'begin': 0., 'rows': 4, 'anvil': 'smooth', 'obliquity': 0., 'vx': 10., 's': penetrationScene,
+        'scenes.profile.s': strips, 'scenes.profile.part': 'flyer', 'scenes.driveEnd.s': strips, 'scenes.addStrip.packing': lambda: packing().translated((0.5, 0.)), 'scenes.driveEnd.part': 'flyer', 'scenes.taylorBar.anvil': 'rough', 'measure.rodMeasure.velocity': [(0., -90.), (0., -80.)], 'measure.speedAlong.velocity': [(0., -90.), (0., -80.)], 'packings.cellGeometry.name': 'hexagonal',
         'packings.create.name': 'hexagonal', 'scenes.tiedPlate.largest': 3., 'materials.Material.flowStress.plasticStrain': 0.1,
         'materials.Material.johnsonCookFractureStrain.triaxiality': 0.3, 'measure.momentumSettled.tolerance': 1e-3, 'outlines.Polygon.classify.radius': D
 }
@@ -94,7 +99,8 @@ def targets(module):
 	"""(name within the module, function of a ready object or None, callable) of all that scripts may call."""
 	m = importlib.import_module('yade_mca.' + module)
 	for name, thing in vars(m).items():
-		if name not in m.__all__ or not str(getattr(thing, '__module__', None)).startswith('yade_mca') or name in RESULTS: continue
+		home = str(getattr(thing, '__module__', None)).split('.')
+		if name not in m.__all__ or home[0] != 'yade_mca' or home[-1] != module and home[-1] in MODULES or name in RESULTS: continue
 		if inspect.isfunction(thing): yield name, None, thing
 		elif inspect.isclass(thing) and not issubclass(thing, BaseException):
 			if not dataclasses.is_dataclass(thing): yield name, None, thing
@@ -126,7 +132,6 @@ def call(module, name, owner, function, argument, value):
 		given = argumentsOf(where, function)
 		if argument in keywords() and where == 'materials.get': given['yieldModel'] = None
 		made = owner() if owner else None
-		O.reset()
 		if argument is not None: given[argument] = value
 		act = lambda: function(made, **given) if owner else function(**given)
 		if argument is None:
@@ -141,7 +146,7 @@ def call(module, name, owner, function, argument, value):
 			after(module, name)
 		except Exception as e:
 			text = '%s: %s' % (type(e).__name__, e)
-			lacks = every_call.poor(e, every_call.names('%s(%s)' % (where, argument)), where=False)
+			lacks = every_call.poor(e, every_call.names('%s(%s)' % (where, argument)), [''])
 			return ('poor', 'lacks %s: %s' % (lacks, text)) if lacks else ('refused', text)
 		return ('accepted' if table.accepted('%s(%s)' % (where, argument), run.kind, 'before') else 'silent'), ''
 
