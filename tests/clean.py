@@ -259,7 +259,8 @@ def main():
 	except Broken as e:
 		say('FAILED: %s' % e)
 		failed += 1
-	say('%.0f s' % (time.time() - start))
+	used = os.times()
+	say('%.0f s, %.0f s of processors' % (time.time() - start, used.children_user + used.children_system))
 	say('clean: %d passed, %d failed' % (passed, failed))
 	return 1 if failed else 0
 
