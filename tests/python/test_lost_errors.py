@@ -96,7 +96,10 @@ print('went on', O.iter)
 def test_aScriptEndsWithStatusOne(plugin, tmp_path, command):
 	(tmp_path / 'fails.py').write_text(FAILS)
 	env = dict(os.environ, PYTHONPATH=os.pathsep.join([str(ROOT / 'pyscripts'), os.environ.get('PYTHONPATH', '')]))
-	for _ in range(4):
-		r = subprocess.run(command + ['fails.py'], cwd=tmp_path, capture_output=True, text=True, stdin=subprocess.DEVNULL, env=env, timeout=120)
+
+	def run(_):
+		return subprocess.run(command + ['fails.py'], cwd=tmp_path, capture_output=True, text=True, stdin=subprocess.DEVNULL, env=env, timeout=300)
+
+	for r in _pool.map(run, range(4)):
 		assert 'went on' not in r.stdout and r.returncode == 1, (r.returncode, r.stdout[-300:], r.stderr[-500:])
 		assert 'dtFactor' in r.stdout + r.stderr
