@@ -79,7 +79,7 @@ def test_allAroundOneErased(plugin):
 	from yade import O
 
 	def change(ids):
-		ring = near(ids, O.bodies[near(ids, (0, 0))[0]].state.pos[:2], 7)
+		ring = near(ids, tuple(O.bodies[near(ids, (0, 0))[0]].state.pos)[:2], 7)
 		for i in ring[1:]:
 			O.bodies.erase(i)
 		return [i for i in ids if i not in ring[1:]]
