@@ -94,9 +94,7 @@ void McaDensity::addForces(Scene* scene)
 	}
 	for (long i = 0; i < n; i++) {
 		const Sum& s = sums[size_t(i)];
-		if (!s.any) continue;
-		scene->forces.addForce(int(i), s.force);
-		scene->forces.addTorque(int(i), Vector3r(0, 0, s.torque));
+		if (s.any) scene->forces.addForce(int(i), s.force), scene->forces.addTorque(int(i), Vector3r(0, 0, s.torque));
 		if (size_t(i) >= place.size() || place[size_t(i)] < 0) continue;
 		const Row& r = rows[size_t(place[size_t(i)])];
 		r.l->moved   = scene->dt;

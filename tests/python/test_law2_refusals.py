@@ -290,19 +290,23 @@ def test_noErrorIsLost(plugin):
 
 
 def test_energiesAreNotReadWhileTheRunGoesOn(plugin):
+	import builtins
+	import time
 	from yade import O
 	from yade.wrapper import PyRunner
 	start(5)
 	d = scene.density()
+	builtins.seen = []
+	engines = O.engines
+	O.engines = engines + [PyRunner(iterPeriod=1, command="seen.append(O.engines[2].energies()['kinetic'])")]  # within a step all stands still
+	O.run(5, True)
+	assert len(builtins.seen) == 5 and np.isfinite(builtins.seen).all()
+	O.engines = engines
 	O.run()
 	for read in d.energies, d.links:
 		with pytest.raises(RuntimeError, match='background'):
 			read()
 	O.pause()
 	O.wait()
+	time.sleep(0.3)  # wait() does not wait for the step under way
 	assert d.energies()['kinetic'] > 0 and len(d.links()) > 50
-	import builtins
-	builtins.seen = []
-	O.engines = O.engines + [PyRunner(iterPeriod=1, command="seen.append(O.engines[2].energies()['kinetic'])")]
-	O.run(5, True)
-	assert len(builtins.seen) == 5 and np.isfinite(builtins.seen).all()
