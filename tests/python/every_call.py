@@ -3,252 +3,34 @@
 
     python3 tests/python/every_call.py [--study] [--only TEXT] [--json FILE]     # prints the counts and each finding
 
-A call is a class, an attribute or an argument, a kind of value (every_call_values) and a moment (every_call_scenes). It is right when it is refused, by the call or
-by the next step before anything has moved, in a message that says what, where and what is allowed; or when every_call_table declares it accepted.
-Calls run in a process that keeps a journal: what crashes or hangs is named, and a new process goes on with the next call.
+A call is a class, an attribute or an argument, a kind of value (every_call_values) and a moment (every_call_scenes). It is right when it is refused, by
+the call or by the next step before anything has moved, in a message that says what, where and what is allowed (every_call_judge); or when
+tests/data/every_call.csv declares it accepted. Calls run in processes that keep a journal: what crashes or hangs is named, and a new process goes on
+with the next call.
 """
 import argparse
 import collections
 import json
 import os
-import re
 import signal
 import sys
 import tempfile
 import time
 from pathlib import Path
 
-import every_call_table as table
-import every_call_values as values
-
 HERE = Path(__file__).resolve().parent
-LIMIT = 10., 90.  #: longest silence of the process that makes the calls [s]: by its own clock (a loop), by the clock on the wall (a lock)
-#: what must not happen
+if str(HERE) not in sys.path: sys.path.insert(0, str(HERE))
+#: longest silence of the process that makes the calls [s]: by its own clock (a loop), by the clock on the wall (a lock)
+LIMIT = 10., 90.
+#: what must not happen. moved: refused one step too late; poor: a message that does not help; broken: a right call is refused
 FAULTS = ('crash', 'hang', 'silent', 'moved', 'poor', 'broken')
-#: kinds that are tried before the first step only, and those that are tried at all moments; the study tries all at all
-TYPES = ('text', 'texts', 'none', 'list', 'empty', 'complex', 'class', 'hugeInt', 'long', 'dict', 'number', 'short', 'wide', 'nested', 'cube', 'half')
-FEW = ('nan', 'nonsense', 'fresh')
-Call = collections.namedtuple('Call', 'name key kind moment run')
-
-
-# ---- what there is
-
-
-def members(cls):
-	"""(defining class, name, object) of all attributes and methods up to YADE's Serializable."""
-	seen = set()
-	for c in cls.__mro__:
-		if c.__name__ in ('instance', 'object', 'Serializable'): continue
-		for name, thing in vars(c).items():
-			wanted = not name.startswith('__') or name == '__call__'
-			if wanted and name not in seen and name not in table.NOT_OURS:
-				seen.add(name)
-				yield c, name, thing
-
-
-def typeOf(prop):
-	found = re.search(r':yattrtype:`([^`]*)`', prop.__doc__ or '')
-	return found.group(1) if found else ''
-
-
-def arguments(function):
-	"""[(type, name, has a default)] from Boost.Python's signature in the docstring, without self."""
-	head = (function.__doc__ or '').strip().split('\n')[0]
-	inside = head[head.find('(') + 1:head.rfind(') ->')] if ') ->' in head else ''
-	found = re.findall(r'\((\w+)\)(\w+)(=?)', inside)
-	return [(t, n, d == '=') for t, n, d in found[1:]]
-
-
-def kindsOf(typeName, value):
-	own = None
-	if typeName.startswith('shared_ptr<Mca'):
-		import yade.wrapper
-		own = getattr(yade.wrapper, typeName[11:-1], None)
-	if not typeName: typeName = type(value).__name__
-	return values.ofType(typeName, own)
-
-
-# ---- one call
-
-
-def positions():
-	from yade import O
-	out = []
-	for b in O.bodies:
-		if b.state is not None: out.append(tuple(b.state.pos))
-	for e in O.engines:
-		if type(e).__name__ == 'McaGridEngine' and e.count: out += [e.view(k, c).tobytes() for k in range(len(e.blocks)) for c in 'xy']
-	return repr(out)
-
-
-RANGE = re.compile(r"\d|must|allowed|one of|known are|there are|remedy|instead|finite|\b(make|set|give|use|call|take|add|put|name)\b", re.I)
-WHERE = re.compile(r"\bMca\w+|\bbody|\bbodies|material '|automat|block|packing|scene|O\.\w+|\bgrid\b", re.I)
-
-
-def poor(error, names, where=()):
-	"""What the message of a refusal lacks, or ''. Boost.Python's own refusal of a type is taken as it is: it stands at the line that sets.
-
-	names: words for what; where: words that say where, besides those of WHERE.
-	"""
-	text = str(error)
-	if type(error).__name__ == 'ArgumentError' or isinstance(error, (AttributeError, OverflowError)) or 'No registered converter' in text: return ''
-	lacks = []
-	if not any(n.lower() in text.lower() for n in names): lacks.append('what')
-	if not WHERE.search(text) and not any(w.lower() in text.lower() for w in where): lacks.append('where')
-	if not RANGE.search(text): lacks.append('allowed or remedy')
-	return ', '.join(lacks)
-
-
-def attempt(act, after, names, accepted, moment, inCall=()):
-	"""(verdict, text): `act` makes the call, `after` the steps that follow; inCall: words for the method that is called."""
-	where = None
-	try:
-		act()
-		if moment not in ('running', 'stale', 'afterReset'): where = positions()
-		after()
-	except Exception as e:
-		text = '%s: %s' % (type(e).__name__, e)
-		lacks = poor(e, names, inCall)
-		if where is not None and positions() != where: return 'moved', text
-		return ('poor', 'lacks %s: %s' % (lacks, text)) if lacks and not accepted else ('refused', text)
-	return ('accepted' if accepted else 'silent'), ''
-
-
-def names(key):
-	"""Words of which a message about this attribute or argument must have one."""
-	own = key.split('(')[-1].rstrip(')') if '(' in key else key.split('.')[-1]
-	return [own, *table.ALSO_CALLED.get(key, table.ALSO_CALLED.get(own, ()))]
-
-
-class Calls:
-	"""Makes the list for one class at one moment."""
-
-	def __init__(self, cls, scene, moment, study):
-		import every_call_scenes as scenes
-		self.cls, (self.sceneName, self.build, self.find), self.moment, self.study = cls, scene, moment, study
-		self.enter = scenes.MOMENTS[moment]
-		self.refusals = {}  # of methods with right arguments, at this moment
-		self.fails = None  # whether the steps fail without any call at this moment
-
-	def label(self, what, kind): return '%s = %s | %s, %s' % (what, kind, self.sceneName, self.moment)
-
-	def start(self):
-		from yade import O
-		import every_call_scenes as scenes
-		scenes.stop()  # YADE itself does not survive O.reset() during a run
-		O.reset()
-		return self.enter(self.build, self.find)
-
-	def baseline(self):
-		thing, after = self.start()
-		try:
-			after()
-		except Exception as e:
-			self.fails = '%s: %s' % (type(e).__name__, e)
-			expected = self.moment in table.MAY_FAIL or self.cls.__name__ in table.LATE
-			lacks = poor(e, [''])
-			return ('refused' if expected and not lacks else 'poor' if expected else 'broken'), self.fails
-		self.fails = ''
-		return 'accepted', ''
-
-	def judged(self, act, after, key, kind, atThisMoment=None):
-		"""At a moment whose steps fail anyway only a crash can be told from right. atThisMoment: refusal of right arguments as well."""
-		if self.fails is None: self.baseline(), self.start()
-		method = re.findall('[A-Z]?[a-z]+', key.split('(')[0].split('.')[1]) if '(' in key else ()
-		verdict, text = attempt(act, after, names(key), table.accepted(key, kind, self.moment), self.moment, method)
-		if verdict == 'poor' and atThisMoment and atThisMoment in text: verdict = 'refused'
-		return ('refused' if self.fails and verdict in ('silent', 'poor', 'moved') else verdict), text
-
-	def attribute(self, owner, name, kind, value):
-		def run():
-			thing, after = self.start()
-			return self.judged(lambda: setattr(thing, name, value), after, '%s.%s' % (owner, name), kind)
-
-		return run
-
-	def reading(self, name):
-		def run():
-			thing, after = self.start()
-			try:
-				getattr(thing, name)
-			except Exception as e:
-				lacks = poor(e, [''])
-				return 'poor' if lacks else 'refused', '%s: %s' % (type(e).__name__, e)
-			return 'accepted', ''
-
-		return run
-
-	def method(self, key, name, good, argument, kind, value):
-		def run():
-			thing, after = self.start()
-			given = dict(good(thing))
-			if argument is not None: given[argument] = value
-			if argument is not None and self.moment != 'before' and key not in self.refusals:
-				try:
-					getattr(thing, name)(**(good(thing)))
-					self.refusals[key] = None
-				except Exception as e:
-					self.refusals[key] = str(e)
-				thing, after = self.start()
-			if argument is None:  # right arguments: may be refused at a bad moment, not at the first
-				try:
-					getattr(thing, name)(**given)
-				except Exception as e:
-					lacks = poor(e, [''])
-					return ('broken' if self.moment == 'before' and key not in table.LATE else 'poor' if lacks else 'refused'), '%s: %s' % (type(e).__name__, e)
-				try:
-					after()
-				except Exception as e:
-					return ('refused' if self.fails is None or self.fails else 'broken'), '%s: %s' % (type(e).__name__, e)
-				return 'accepted', ''
-			return self.judged(lambda: getattr(thing, name)(**given), after, '%s(%s)' % (key, argument), kind, self.refusals.get(key))
-
-		return run
-
-	def wanted(self, kind, key):
-		if self.study: return True
-		if table.ACCEPTED.get(key, ('', ))[0] == table.ALL: return self.moment == 'before'
-		return self.moment == 'before' or kind in FEW or self.moment == 'between' and kind not in TYPES
-
-	def all(self):
-		call = lambda what, key, kind, run: Call(self.label(what, kind), key, kind, self.moment, run)
-		cls = self.cls.__name__
-		yield call(cls, cls, 'nothing', self.baseline)
-		for owner, name, thing in members(self.cls):
-			key = '%s.%s' % (owner.__name__, name)
-			what = '%s.%s' % (cls, name)
-			if isinstance(thing, property):
-				if self.moment != 'between': yield call(what, key, 'read', self.reading(name))
-				try:
-					now = getattr(self.cls(), name)
-				except Exception:
-					now = None
-				for kind, value in kindsOf(typeOf(thing), now).items():
-					if self.wanted(kind, key) and (thing.fset or kind == 'zero' and self.moment == 'before'): yield call(what, key, kind, self.attribute(owner.__name__, name, kind, value))
-			elif callable(thing):
-				given = arguments(thing)
-				good = table.goodArguments(key, given)
-				yield call(what, key, 'good', self.method(key, name, good, None, 'good', None))
-				for typeName, argument, _ in given:
-					for kind, value in kindsOf(typeName, None).items():
-						if self.wanted(kind, '%s(%s)' % (key, argument)): yield call('%s(%s)' % (what, argument), key, kind, self.method(key, name, good, argument, kind, value))
 
 
 def everyCall(study=False):
 	"""All calls, always in the same order."""
-	import yade.wrapper
-	import yade_mca
-	import every_call_scenes as scenes
-	for name in yade_mca.classes:
-		cls = getattr(yade.wrapper, name)
-		for scene in scenes.holdersOf(cls):
-			for moment in scenes.momentsOf(scene[0]):
-				yield from Calls(cls, scene, moment, study).all()
+	import every_call_classes as classes
 	import every_call_modules as modules
-	yield from modules.everyCall(Call, study)
-
-
-# ---- processes
+	return [*classes.everyCall(study), *modules.everyCall()]
 
 
 def make(calls, chosen, journal):
@@ -301,8 +83,7 @@ def follow(process, journal):
 
 def run(study=False, only='', report=None):
 	"""Makes all calls. Returns a list of dicts (name, key, verdict, text), in order. YADE must not have run in this process: it is forked."""
-	import yade_mca
-	calls = list(everyCall(study))
+	calls = everyCall(study)
 	todo = [k for k, c in enumerate(calls) if only in c.name]
 	results = []
 	with tempfile.TemporaryDirectory() as folder:
@@ -352,5 +133,4 @@ def main():
 
 
 if __name__ == '__main__':
-	sys.path[:0] = [str(HERE)]
 	main()

@@ -5,7 +5,10 @@ import importlib
 import inspect
 import math
 
+import every_call_judge as judge
+import every_call_table as table
 import every_call_values as values
+from every_call_classes import Call
 
 MODULES = ('packings', 'outlines', 'measure', 'materials', 'scenes')
 #: records that functions return: nobody makes them
@@ -45,18 +48,25 @@ def strips():
 
 #: right arguments by name; functions make fresh ones. Where a name means different things: 'module.function.name'
 GOOD = {
-        'd': D, 'spacing': D, 'outline': rectangle, 'angle': 0., 'origin': (0., 0.), 'rim': 'cells', 'minWeight': 0.2, 'dim': None, 'packing': packing, 'material': '4340', 'velocity': (1., 0.),
-        'angularVelocity': 0., 'mask': 1, 'color': (0.5, 0.5, 0.5), 'by': (D, 0.), 'which': [0, 1, 2], 'point': (0., 0.), 'direction': (0., 1.), 'tolerance': 1e-3, 'scale': 1., 'density': 7800.,
-        'points': [(0, 0), (D, 0), (0, D)], 'holes': (), 'center': (0., 0.), 'size': (4 * D, 3 * D), 'radius': 3 * D, 'segments': 60, 'predicate': predicate, 'z': 0., 'pad': 0., 'shape': rectangle,
-        'cells': [[(0, 0), (D, 0), (0, D)]], 'mass': [1., 1.], 'plasticStrain': [0., 0.2], 'impactSpeed': 100., 'positions': [(0., 0.), (0., -D)], 'rear': (0., 0.), 'quantile': 0.95,
-        'time': [0., 1., 2.], 'momentum': [3., 2., 2.], 'window': 0.5, 'name': '4340', 'label': 'x', 'yieldModel': 'perfect', 'rate': 1., 'temperature': 300., 'triaxiality': 0.3,
-        'volumeRule': 'affine', 'stepFactor': 0.4, 'length': 5 * D, 'height': 3 * D, 'upper': packing, 'lower': packing, 'flyer': '4340', 'target': '4340', 'flyerThickness': 3 * D,
-        'targetThickness': 3 * D, 'speed': 50., 'lateral': 'fixed', 'diameter': 3 * D, 'friction': 0.1, 'engineOptions': None, 'start': 0., 'end': 10 * D, 'first': D, 'growth': 1.1, 'largest': 3 * D,
-        'thickness': 3 * D, 'automataWidth': 8 * D, 'plateWidth': 20 * D, 'mode': 'coupled', 'ends': 'fixed', 'scene': None, 'dtFactor': 0.4, 'rodLength': 4 * D, 'rodDiameter': 3 * D, 'rod': 'WHA_JC',
-        'plate': '4340', 'fractureStrain': 1., 'spallStrength': (3e9, 3e9), 'strengthSpread': 0.05, 'eos': 'shockAdiabat', 'viscosity': 1., 'seed': 1, 'part': 'rod', 'normal': (0., -1.), 'begin': 0., 'rows': 4, 'anvil': 'smooth', 'obliquity': 0., 'vx': 10., 's': penetrationScene,
-        'scenes.profile.s': strips, 'scenes.profile.part': 'flyer', 'scenes.driveEnd.s': strips, 'scenes.addStrip.packing': lambda: packing().translated((0.5, 0.)), 'scenes.driveEnd.part': 'flyer', 'scenes.taylorBar.anvil': 'rough', 'measure.rodMeasure.velocity': [(0., -90.), (0., -80.)], 'measure.speedAlong.velocity': [(0., -90.), (0., -80.)], 'packings.cellGeometry.name': 'hexagonal',
-        'packings.create.name': 'hexagonal', 'scenes.tiedPlate.largest': 3., 'materials.Material.flowStress.plasticStrain': 0.1,
-        'materials.Material.johnsonCookFractureStrain.triaxiality': 0.3, 'measure.momentumSettled.tolerance': 1e-3, 'outlines.Polygon.classify.radius': D
+        'd': D, 'spacing': D, 'outline': rectangle, 'angle': 0., 'origin': (0., 0.), 'rim': 'cells', 'minWeight': 0.2, 'dim': None,
+        'packing': packing, 'material': '4340', 'velocity': (1., 0.), 'angularVelocity': 0., 'mask': 1, 'color': (0.5, 0.5, 0.5), 'by': (D, 0.),
+        'which': [0, 1, 2], 'point': (0., 0.), 'direction': (0., 1.), 'tolerance': 1e-3, 'scale': 1., 'density': 7800.,
+        'points': [(0, 0), (D, 0), (0, D)], 'holes': (), 'center': (0., 0.), 'size': (4 * D, 3 * D), 'radius': 3 * D, 'segments': 60,
+        'predicate': predicate, 'z': 0., 'pad': 0., 'shape': rectangle, 'cells': [[(0, 0), (D, 0), (0, D)]], 'mass': [1., 1.],
+        'plasticStrain': [0., 0.2], 'impactSpeed': 100., 'positions': [(0., 0.), (0., -D)], 'rear': (0., 0.), 'quantile': 0.95, 'time': [0., 1., 2.],
+        'momentum': [3., 2., 2.], 'window': 0.5, 'name': '4340', 'label': 'x', 'yieldModel': 'perfect', 'rate': 1., 'temperature': 300.,
+        'triaxiality': 0.3, 'volumeRule': 'affine', 'stepFactor': 0.4, 'length': 5 * D, 'height': 3 * D, 'upper': packing, 'lower': packing,
+        'flyer': '4340', 'target': '4340', 'flyerThickness': 3 * D, 'targetThickness': 3 * D, 'speed': 50., 'lateral': 'fixed', 'diameter': 3 * D,
+        'friction': 0.1, 'engineOptions': None, 'start': 0., 'end': 10 * D, 'first': D, 'growth': 1.1, 'largest': 3 * D, 'thickness': 3 * D,
+        'automataWidth': 8 * D, 'plateWidth': 20 * D, 'mode': 'coupled', 'ends': 'fixed', 'scene': None, 'dtFactor': 0.4, 'rodLength': 4 * D,
+        'rodDiameter': 3 * D, 'rod': 'WHA_JC', 'plate': '4340', 'fractureStrain': 1., 'spallStrength': (3e9, 3e9), 'strengthSpread': 0.05,
+        'eos': 'shockAdiabat', 'viscosity': 1., 'seed': 1, 'part': 'rod', 'normal': (0., -1.), 'begin': 0., 'rows': 4, 'anvil': 'smooth',
+        'obliquity': 0., 'vx': 10., 's': penetrationScene, 'scenes.profile.s': strips, 'scenes.profile.part': 'flyer', 'scenes.driveEnd.s': strips,
+        'scenes.addStrip.packing': lambda: packing().translated((0.5, 0.)), 'scenes.driveEnd.part': 'flyer', 'scenes.taylorBar.anvil': 'rough',
+        'measure.rodMeasure.velocity': [(0., -90.), (0., -80.)], 'measure.speedAlong.velocity': [(0., -90.), (0., -80.)],
+        'packings.cellGeometry.name': 'hexagonal', 'packings.create.name': 'hexagonal', 'scenes.tiedPlate.largest': 3.,
+        'materials.Material.flowStress.plasticStrain': 0.1, 'materials.Material.johnsonCookFractureStrain.triaxiality': 0.3,
+        'measure.momentumSettled.tolerance': 1e-3, 'outlines.Polygon.classify.radius': D
 }
 
 
@@ -121,10 +131,7 @@ def after(module, name):
 	if len(O.bodies) or any(type(e).__name__ == 'McaGridEngine' for e in O.engines): O.step()
 
 
-def call(module, name, owner, function, argument, value):
-	import every_call
-	import every_call_table as table
-
+def call(module, name, owner, function, argument=None, kind='good', value=None):
 	def run():
 		from yade import O
 		O.reset()
@@ -134,40 +141,27 @@ def call(module, name, owner, function, argument, value):
 		made = owner() if owner else None
 		if argument is not None: given[argument] = value
 		act = lambda: function(made, **given) if owner else function(**given)
-		if argument is None:
-			try:
-				act()
-				after(module, name)
-			except Exception as e:
-				return 'broken', '%s: %s' % (type(e).__name__, e)
-			return 'accepted', ''
+		if argument is not None:
+			key = '%s(%s)' % (where, argument)
+			return judge.attempt(act, lambda: after(module, name), judge.words(key), table.accepted(key, kind, 'before'), still=False, where=[''])
 		try:
 			act()
 			after(module, name)
 		except Exception as e:
-			text = '%s: %s' % (type(e).__name__, e)
-			lacks = every_call.poor(e, every_call.names('%s(%s)' % (where, argument)), [''])
-			return ('poor', 'lacks %s: %s' % (lacks, text)) if lacks else ('refused', text)
-		return ('accepted' if table.accepted('%s(%s)' % (where, argument), run.kind, 'before') else 'silent'), ''
+			return 'broken', judge.told(e)
+		return 'accepted', ''
 
 	return run
 
 
-def everyCall(Call, study):
+def everyCall():
 	for module in MODULES:
 		for name, owner, function in targets(module):
 			where = '%s.%s' % (module, name)
-			yield Call('%s = good' % where, where, 'good', 'before', call(module, name, owner, function, None, None))
+			yield Call('%s = good' % where, where, 'good', 'before', call(module, name, owner, function))
 			arguments = argumentsOf(where, function)
 			if where == 'materials.get': arguments.update(constants())
 			for argument, value in arguments.items():
-				if argument in table().SELDOM.get(where, ()): continue
 				for kind, bad in kindsOf(value, argument).items():
-					run = call(module, name, owner, function, argument, bad)
-					run.kind = kind
+					run = call(module, name, owner, function, argument, kind, bad)
 					yield Call('%s(%s) = %s' % (where, argument, kind), where, kind, 'before', run)
-
-
-def table():
-	import every_call_table
-	return every_call_table

@@ -8,7 +8,7 @@ What is read is found by looking at the class: properties and methods without ar
 import sys
 import time
 
-import every_call
+import every_call_classes as classes
 import every_call_scenes as scenes
 
 #: methods that change something or are no reading
@@ -48,10 +48,10 @@ def build(road):
 def readings(engine):
 	"""Functions without arguments, one for each thing that can be read."""
 	out = []
-	for owner, name, thing in every_call.members(type(engine)):
+	for owner, name, thing in classes.members(type(engine)):
 		if name in NOT_READ: continue
 		if isinstance(thing, property): out.append(lambda n=name: getattr(engine, n))
-		elif not every_call.arguments(thing): out.append(getattr(engine, name))
+		elif not classes.arguments(thing): out.append(getattr(engine, name))
 		else: out += [lambda n=name, a=a: getattr(engine, n)(*a) for a in WITH.get('%s.%s' % (owner.__name__, name), ())]
 	return out
 

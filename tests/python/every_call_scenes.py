@@ -12,8 +12,8 @@ D = 1e-3
 def metal(**overrides):
 	"""All laws at once, so that each constant counts."""
 	from yade_mca import materials
-	return materials.mcaMat('4340', **dict(dict(eos='mieGruneisen', fractureStrain=0.5, spallStrength=3e9, pairStrength=9e9, fractureStress=9e9, strengthRatio=1.2, strengthSpread=0.05,
-	                                            strengthDistribution='weibull', frictionAngle=0.2), **overrides))
+	strength = dict(fractureStrain=0.5, spallStrength=3e9, pairStrength=9e9, fractureStress=9e9, strengthRatio=1.2, strengthSpread=0.05)
+	return materials.mcaMat('4340', **dict(dict(strength, eos='mieGruneisen', strengthDistribution='weibull', frictionAngle=0.2), **overrides))
 
 
 def twoBlocks():

@@ -7,7 +7,10 @@ NAN, INF, HUGE = float('nan'), float('inf'), 1e300
 #: what no attribute or argument of a number can be
 NO_NUMBER = {'text': 'x', 'none': None, 'list': [1.], 'empty': (), 'complex': 1j, 'class': object()}
 FLOAT = {'nan': NAN, 'inf': INF, '-inf': -INF, 'huge': HUGE, '-huge': -HUGE, 'negative': -1., 'zero': 0., 'hugeInt': 10**400, **NO_NUMBER}
-INT = {'negative': -1, '-2': -2, 'zero': 0, 'huge': 2**31 - 1, '-huge': -2**31, 'hugeInt': 10**30, 'long': 2**40, 'half': 0.5, 'nan': NAN, 'inf': INF, **NO_NUMBER}
+INT = {
+        'negative': -1, '-2': -2, 'zero': 0, 'huge': 2**31 - 1, '-huge': -2**31, 'hugeInt': 10**30, 'long': 2**40, 'half': 0.5, 'nan': NAN, 'inf': INF,
+        **NO_NUMBER
+}
 BOOL = {'text': 'x', 'list': [True], 'half': 0.5, 'nan': NAN, 'class': object()}  # None and whole numbers count by their truth in Boost.Python
 TEXT = {'empty': '', 'nonsense': 'nonsense', 'number': 5, 'none': None, 'long': 'x' * 10000, 'list': ['left']}  # Boost.Python takes bytes as text
 NO_VECTOR = {'short': (1.,), 'text': 'ab', 'number': 1., 'none': None, 'empty': (), 'nested': ((1., 2.), (3., 4.)), 'texts': ('a', 'b')}
@@ -15,15 +18,19 @@ NO_VECTOR = {'short': (1.,), 'text': 'ab', 'number': 1., 'none': None, 'empty': 
 
 def vector(n):
 	rest = (0.,) * (n - 1)
-	kinds = {'nan': (NAN, *rest), 'inf': (INF, *rest), '-inf': (*rest, -INF), 'huge': (HUGE, *rest), 'negative': (-1., *rest), 'zero': (0., *rest), 'wide': (1.,) * (n + 2), **NO_VECTOR}
-	return kinds
+	numbers = {'nan': (NAN, *rest), 'inf': (INF, *rest), '-inf': (*rest, -INF), 'huge': (HUGE, *rest), 'negative': (-1., *rest), 'zero': (0., *rest)}
+	return {**numbers, 'wide': (1., ) * (n + 2), **NO_VECTOR}
 
 
-IDS = {'negative': [-1], 'huge': [2**31 - 1], 'long': [2**40], 'nan': [NAN], 'half': [0.5], 'empty': [], 'twice': [1, 1], 'nested': [[1]], 'texts': ['x'], 'number': 5, 'text': 'ab', 'none': None}
+IDS = {
+        'negative': [-1], 'huge': [2**31 - 1], 'long': [2**40], 'nan': [NAN], 'half': [0.5], 'empty': [], 'twice': [1, 1], 'nested': [[1]], 'texts': ['x'],
+        'number': 5, 'text': 'ab', 'none': None
+}
 #: for arguments that are looked at in Python: numbers, sequences, histories
 ANY = {
-        **{k: FLOAT[k] for k in ('nan', 'inf', '-inf', 'huge', '-huge', 'negative', 'zero', 'hugeInt')}, 'text': 'x', 'none': None, 'empty': (), 'complex': 1j, 'class': object(),
-        'half': 0.5, 'nested': [[1., 2.], [3.]], 'three': (1., 2., 3.), 'nans': [NAN, NAN], 'infs': [INF, 0.], 'texts': ['a', 'b'], 'dict': {}, 'cube': np.ones((2, 2, 2)), 'one': [1.]
+        **{k: FLOAT[k] for k in ('nan', 'inf', '-inf', 'huge', '-huge', 'negative', 'zero', 'hugeInt')}, 'half': 0.5, 'text': 'x', 'none': None,
+        'complex': 1j, 'class': object(), 'dict': {}, 'empty': (), 'one': [1.], 'three': (1., 2., 3.), 'nans': [NAN, NAN], 'infs': [INF, 0.],
+        'nested': [[1., 2.], [3.]], 'texts': ['a', 'b'], 'cube': np.ones((2, 2, 2))
 }
 
 

@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 
 import every_call
+import every_call_classes as classes
+import every_call_judge as judge
 import every_call_table as table
 
 HERE = Path(__file__).resolve().parent
@@ -18,7 +20,8 @@ def made(folder, *options):
 	"""Results of all calls, made by processes of their own."""
 	out = folder / 'calls.json'
 	environment = dict(os.environ, PYTHONPATH=os.pathsep.join(p for p in sys.path if p), OMP_NUM_THREADS='1', MPLBACKEND='Agg')
-	r = subprocess.run(['/usr/bin/python3', str(HERE / 'every_call.py'), '--json', str(out), *options], capture_output=True, text=True, errors='replace', env=environment)
+	command = ['/usr/bin/python3', str(HERE / 'every_call.py'), '--json', str(out), *options]
+	r = subprocess.run(command, capture_output=True, text=True, errors='replace', env=environment)
 	assert r.returncode == 0, r.stderr[-2000:]
 	return json.loads(out.read_text())
 
@@ -70,7 +73,7 @@ def test_aNewAttributeIsTriedWithoutBeingNamed(plugin):
 
 		depth = property(lambda self: self._depth, lambda self, v: setattr(self, '_depth', v), doc='how deep [m] :yattrtype:`Real`')
 
-	made = every_call.Calls(Fresh, ('alone', lambda reuse=None: None, Fresh), 'before', True)
+	made = classes.Calls(Fresh, ('alone', lambda reuse=None: None, Fresh), 'before', True)
 	verdicts = {c.kind: c.run()[0] for c in made.all() if c.key == 'Fresh.depth'}
 	assert verdicts['nan'] == verdicts['negative'] == verdicts['text'] == 'silent' and verdicts['read'] == 'accepted', verdicts
 
@@ -82,12 +85,13 @@ def test_aNewAttributeIsTriedWithoutBeingNamed(plugin):
         ('McaEngine: depth = -1 must be above 0', ''),
 ])
 def test_messagesAreJudged(text, lacks):
-	assert every_call.poor(RuntimeError(text), ['depth']) == lacks
+	assert judge.poor(RuntimeError(text), ['depth']) == lacks
 
 
 def readers(road, seconds):
 	environment = dict(os.environ, PYTHONPATH=os.pathsep.join(p for p in sys.path if p), OMP_NUM_THREADS='2', MPLBACKEND='Agg')
-	r = subprocess.run(['/usr/bin/python3', str(HERE / 'every_call_readers.py'), road, str(seconds)], capture_output=True, text=True, errors='replace', env=environment, timeout=120)
+	command = ['/usr/bin/python3', str(HERE / 'every_call_readers.py'), road, str(seconds)]
+	r = subprocess.run(command, capture_output=True, text=True, errors='replace', env=environment, timeout=300)
 	return r.returncode, r.stdout[-300:] + r.stderr[-300:]
 
 
