@@ -60,7 +60,7 @@ void Grid::prescribe(const std::vector<int>& nodes, double nx, double ny, const 
 	checkNodes(nodes, "prescribed velocity");
 	velocity.validate("prescribed velocity [m/s]");
 	const double len = std::hypot(nx, ny);
-	if (!(len > 0) || !std::isfinite(len)) throw Error("prescribed velocity: the direction must be finite and not zero.");
+	if (!(len > 0 && len < 1e100)) throw Error("prescribed velocity: the direction must be finite and not zero.");
 	const int t = boundary_.addTable(velocity);
 	for (const int n : nodes) boundary_.constrain(n, nx / len, ny / len, t, nodeName(n));
 }
@@ -85,6 +85,7 @@ void Grid::symmetry(int block, Side side)
 std::vector<EdgeLoad> Grid::sideEdges(int block, Side side, int from, int to)
 {
 	std::vector<int> n     = sideNodes(block, side, from, to);
+	if (n.size() < 2) throw Error("side of block '" + blocks_[size_t(block)]->options.name + "': start = " + std::to_string(from) + " and end = " + std::to_string(to) + " are one node, which has no edge to load; name at least two nodes.");
 	const Block&     b     = *blocks_[size_t(block)];
 	const bool       alongI = side == Side::bottom || side == Side::top, flip = side == Side::top || side == Side::left;
 	const double     rho   = b.material.eos.rho0;

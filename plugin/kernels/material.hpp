@@ -49,7 +49,7 @@ inline void validate(const Material& m, const std::string& name)
 		s << "material '" << name << "': " << what << " = " << value << " is not allowed; it must be " << range << ".";
 		throw Error(s.str());
 	};
-	const double inf = std::numeric_limits<double>::infinity();
+	const double inf = 1e100; // no constant is as large in any system of units, and products of larger ones are not finite
 	need(m.eos.rho0 > 0 && m.eos.rho0 < inf, "density [kg/m3]", m.eos.rho0, "finite and above zero");
 	need(m.eos.c0 > 0 && m.eos.c0 < inf, "bulkSoundSpeed [m/s]", m.eos.c0, "finite and above zero");
 	need(m.eos.b >= 0 && m.eos.b < inf, "hugoniotSlope [-]", m.eos.b, "finite and not negative (0: linear law)");
@@ -59,10 +59,10 @@ inline void validate(const Material& m, const std::string& name)
 	need(m.yield.A >= 0, "yieldStress [Pa]", m.yield.A, "not negative (infinite: elastic)");
 	need(m.yield.B >= 0 && m.yield.B < inf, "hardeningModulus [Pa]", m.yield.B, "finite and not negative");
 	// those of Johnson and Cook must be numbers for any law: nobody means NaN
-	need(std::isfinite(m.yield.n), "hardeningExponent [-]", m.yield.n, "finite");
-	need(std::isfinite(m.yield.C), "rateCoefficient [-]", m.yield.C, "finite");
-	need(std::isfinite(m.yield.rate0), "referenceRate [1/s]", m.yield.rate0, "finite");
-	need(std::isfinite(m.yield.m), "thermalSoftening [-]", m.yield.m, "finite");
+	need(std::fabs(m.yield.n) < inf, "hardeningExponent [-]", m.yield.n, "finite");
+	need(std::fabs(m.yield.C) < inf, "rateCoefficient [-]", m.yield.C, "finite");
+	need(std::fabs(m.yield.rate0) < inf, "referenceRate [1/s]", m.yield.rate0, "finite");
+	need(std::fabs(m.yield.m) < inf, "thermalSoftening [-]", m.yield.m, "finite");
 	need(m.yield.Tm > 0, "meltTemperature [K]", m.yield.Tm, "above zero (infinite: never)");
 	need(m.yield.T0 >= 0 && m.yield.T0 < inf, "referenceTemperature [K]", m.yield.T0, "finite and not negative");
 	if (m.yield.kind == YieldKind::johnsonCook) {

@@ -109,6 +109,7 @@ void McaDensity::checkUntouched(const Row& r) const
 		if (value != rest)
 			refuse("body ", r.id, ": state.", name, " = ", value, unit, " before its first step is a result of the law and cannot be given; set it to ", rest, ". plasticStrain, temperature and strength can.");
 	};
+	if (!(std::fabs(m.se3.orientation.coeffs().squaredNorm() - 1.) < 0.1)) refuse("body ", r.id, ": ori is no rotation; it must be a quaternion of norm 1.");
 	need("pressure", m.pressure, 0, " Pa"), need("volumeRatio", m.volumeRatio, 1, ""), need("stressZZ", m.stressZZ, 0, " Pa"), need("equivalentStress", m.equivalentStress, 0, " Pa");
 }
 
@@ -130,10 +131,10 @@ void McaDensity::checkState(const Row& r) const
 	const auto need = [&](const char* name, Real value, bool ok, const char* range) {
 		if (!ok) refuse("body ", r.id, ": state.", name, " = ", value, " must be ", range, ".");
 	};
-	need("strength", m.strength, m.strength > 0 && std::isfinite(m.strength), "finite and above zero");
-	need("plasticStrain", m.plasticStrain, m.plasticStrain >= 0 && std::isfinite(m.plasticStrain), "finite and not negative");
-	need("temperature", m.temperature, m.temperature >= 0 && std::isfinite(m.temperature), "finite and not negative [K]");
-	need("dissipated", m.dissipated, std::isfinite(m.dissipated), "finite");
+	need("strength", m.strength, m.strength > 0 && m.strength <= 1e9, "above 0 and at most 1e9");
+	need("plasticStrain", m.plasticStrain, m.plasticStrain >= 0 && m.plasticStrain <= 1e6, "from 0 to 1e6");
+	need("temperature", m.temperature, m.temperature >= 0 && m.temperature <= 1e9, "from 0 to 1e9 [K]");
+	need("dissipated", m.dissipated, std::fabs(m.dissipated) < 1e30, "finite and below 1e30 [J/kg]");
 	need("pressure", m.pressure, std::isfinite(m.pressure), "finite");
 	need("volumeRatio", m.volumeRatio, m.volumeRatio > 0 && std::isfinite(m.volumeRatio), "finite and above zero");
 	need("stressZZ", m.stressZZ, std::isfinite(m.stressZZ), "finite");

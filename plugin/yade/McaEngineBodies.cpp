@@ -33,6 +33,8 @@ namespace {
 	void checkMotion(const Body& b)
 	{
 		const State& s = *b.state;
+		if (!(s.vel.cwiseAbs().maxCoeff() < 1e100 && s.angVel.cwiseAbs().maxCoeff() < 1e100)) refuse(b, "vel or angVel is not finite; give finite numbers below 1e100 [m/s], [rad/s].");
+		if (!(std::fabs(s.se3.orientation.coeffs().squaredNorm() - 1.) < 0.1)) refuse(b, "ori is no rotation; it must be a quaternion of norm 1.");
 		if (!s.se3.position.allFinite() || !s.vel.allFinite() || !s.angVel.allFinite() || !s.se3.orientation.coeffs().allFinite())
 			refuse(b, "position, velocity, angular velocity or orientation is not finite; give finite numbers.");
 		if (s.vel[2] != 0 || s.angVel[0] != 0 || s.angVel[1] != 0)
@@ -44,8 +46,12 @@ namespace {
 	void checkFresh(const Body& b, const McaState& s)
 	{
 		if (s.law) refuse(b, "McaDensity has moved it, with stresses that cannot be taken over; go on with the law in YADE's own loop, or make new bodies.");
+		const auto within = [&](const char* name, Real v, Real lo, Real hi, const char* unit) {
+			if (!(v >= lo && v <= hi)) refuse(b, string("state.") + name + " = " + text(v) + unit + " must be from " + text(lo) + " to " + text(hi) + ".");
+		};
+		within("plasticStrain", s.plasticStrain, 0, 1e6, ""), within("temperature", s.temperature, 0, 1e9, " K"), within("strength", s.strength, 0, 1e9, "");
 		if (s.brokenLinks != 0 || s.pressure != 0 || s.volumeRatio != 1 || s.equivalentStress != 0 || s.stressZZ != 0 || s.dissipated != 0)
-			refuse(b, "its state holds results (brokenLinks = " + std::to_string(s.brokenLinks) + ", pressure = " + text(s.pressure) + " Pa, volumeRatio = " + text(s.volumeRatio)
+			refuse(b, "its state holds results (brokenLinks = " + std::to_string(s.brokenLinks) + ", pressure = " + text(s.pressure) + " Pa, stressZZ = " + text(s.stressZZ) + " Pa, dissipated = " + text(s.dissipated) + " J/kg, volumeRatio = " + text(s.volumeRatio)
 			               + ", equivalentStress = " + text(s.equivalentStress) + " Pa): broken links would heal and stress be dropped. An engine starts from rest: keep the engine that made them in O.engines, or give the body the state of "
 			                 "rest with packings.resetStates(ids).");
 	}
@@ -148,7 +154,7 @@ void McaEngine::gather(Scene* scene)
 	auto fresh = shared_ptr<Solver>(new Solver);
 	// no automaton goes on: a new start, as in the next case of a sweep
 	const bool goesOn = solver && std::any_of(now.automata.begin(), now.automata.end(), [](const Automaton& a) { return !a.isNew; });
-	if (!goesOn && solver && carriesRows()) throw mca::Error("McaEngine: all automata are gone, and with them rows that are tied to a grid; they cannot be erased.");
+	if (!goesOn && solver && carriesRows()) throw mca::Error("McaEngine: all automata are gone, and with them rows that are tied to a grid; they cannot be erased. Make a new McaEngine, grid and coupler for the new bodies.");
 	fresh->build(now.automata, now.materials, solverOptions(scene), goesOn ? solver.get() : nullptr);
 	std::unordered_set<int> newIds;
 	for (auto& a : now.automata)
@@ -248,9 +254,9 @@ vector<McaEngine::Change> McaEngine::changes(bool& rebuild) const
 		c.blocked       = !tied && !(free(State::DOF_X, S.ax[i]) && free(State::DOF_Y, S.ay[i]) && free(State::DOF_RZ, S.ar[i]));
 		if (c.position || c.velocity || c.spin || c.angle) checkMotion(b);
 		if (tied && (c.position || c.velocity)) refuse(b, "it is tied to a grid, which moves it; its position and velocity cannot be set. Set those of the grid before the first step.");
-		if (c.plasticStrain && !(s.plasticStrain >= 0 && std::isfinite(s.plasticStrain))) refuse(b, "plasticStrain = " + text(s.plasticStrain) + " must be finite and not negative.");
-		if (c.temperature && !(s.temperature > 0 && std::isfinite(s.temperature))) refuse(b, "temperature = " + text(s.temperature) + " K must be finite and above 0.");
-		if (c.strength && !(s.strength > 0 && std::isfinite(s.strength))) refuse(b, "strength = " + text(s.strength) + " must be finite and above 0.");
+		if (c.plasticStrain && !(s.plasticStrain >= 0 && s.plasticStrain <= 1e6)) refuse(b, "state.plasticStrain = " + text(s.plasticStrain) + " must be from 0 to 1e6.");
+		if (c.temperature && !(s.temperature > 0 && s.temperature <= 1e9)) refuse(b, "state.temperature = " + text(s.temperature) + " K must be above 0 and at most 1e9.");
+		if (c.strength && !(s.strength > 0 && s.strength <= 1e9)) refuse(b, "state.strength = " + text(s.strength) + " must be above 0 and at most 1e9.");
 		const Real radius = static_cast<const Sphere*>(b.shape.get())->radius;
 		if (differs(s.mass, S.mass[i]) || differs(s.inertia[2], S.inertia[i]) || differs(2. * radius, S.diameter[i]))
 			refuse(b, "mass " + text(s.mass) + " kg/m, inertia " + text(s.inertia[2]) + " kg m or radius " + text(radius) + " m was changed (from " + text(S.mass[i]) + ", " + text(S.inertia[i]) + ", " + text(0.5 * S.diameter[i])

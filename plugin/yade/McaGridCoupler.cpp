@@ -55,6 +55,12 @@ void McaGridCoupler::find(Scene* scene)
 	foundAutomata = automata ? automata : onlyOne<McaEngine>(scene, "automata");
 	foundGrid     = grid ? grid : onlyOne<McaGridEngine>(scene, "grid");
 	if (!foundGrid) throw mca::Error("McaGridCoupler: there is no McaGridEngine in O.engines.");
+	const auto stands = [&](const Engine* e) { return std::any_of(scene->engines.begin(), scene->engines.end(), [&](const shared_ptr<Engine>& s) { return s.get() == e; }); };
+	const bool a = !foundAutomata || stands(foundAutomata.get()), g = stands(foundGrid.get());
+	if (!a || !g) {
+		foundAutomata.reset(), foundGrid.reset();
+		throw mca::Error(string("McaGridCoupler: the attribute '") + (a ? "grid" : "automata") + "' is an engine that does not stand in O.engines; put it there, or leave the attribute empty to take the only one.");
+	}
 }
 
 bool McaGridCoupler::drives(const McaSolverEngine* engine, Scene* scene)

@@ -32,6 +32,11 @@ namespace {
 			if (PyObject_GetBuffer(a.ptr(), &b, PyBUF_C_CONTIGUOUS) != 0) py::throw_error_already_set();
 			const double*  p = static_cast<const double*>(b.buf);
 			vector<double> v(p, p + b.len / Py_ssize_t(sizeof(double)));
+			for (double x : v)
+				if (!std::isfinite(x)) {
+					PyBuffer_Release(&b);
+					throw mca::Error(string(name) + " must be finite numbers; one is " + std::to_string(x) + ".");
+				}
 			if (shape) shape->assign(b.shape, b.shape + b.ndim);
 			PyBuffer_Release(&b);
 			return v;
@@ -107,7 +112,12 @@ int McaGridEngine::addRectangle(shared_ptr<Material> material, py::object xs, py
 {
 	return inCall("addRectangle", [&] {
 		const auto m = constants(material);
-		const auto x = numbers(xs, "xs"), y = numbers(ys, "ys");
+		vector<long> sx, sy;
+		const auto   x = numbers(xs, "xs", &sx), y = numbers(ys, "ys", &sy);
+		if (sx.size() != 1 || sy.size() != 1) throw mca::Error("xs and ys must be rows of numbers (one dimension), the grid lines [m].");
+		for (const auto* v : { &x, &y })
+			for (size_t k = 1; k < v->size(); k++)
+				if (!((*v)[k] > (*v)[k - 1]) && v->size() > 2 && (*v)[k] == (*v)[k - 1]) throw mca::Error(string(v == &x ? "xs" : "ys") + " must rise; entries " + std::to_string(k - 1) + " and " + std::to_string(k) + " are equal.");
 		return locked([&] { return grid().addRectangle(m, x, y, blockOptions(name, hourglass, edgeViscosity)); });
 	});
 }

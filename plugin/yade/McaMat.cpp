@@ -23,7 +23,7 @@ mca::Material McaMat::toMaterial() const
 		s << "material '" << name << "': " << what << " = " << value << " is not allowed; it must be " << range << ".";
 		throw mca::Error(s.str());
 	};
-	const auto notNegative = [](Real v) { return v >= 0 && std::isfinite(v); };
+	const auto notNegative = [](Real v) { return v >= 0 && v < 1e100; };
 	need("hugoniotSlope [-]", hugoniotSlope, notNegative(hugoniotSlope), "finite and not negative (0: linear law)");
 	need("hardeningModulus [Pa]", hardeningModulus, notNegative(hardeningModulus), "finite and not negative");
 	need("heatCapacity [J/kg/K]", heatCapacity, notNegative(heatCapacity), "finite and not negative (0: no heating)");
@@ -60,6 +60,12 @@ mca::Material McaMat::toMaterial() const
 
 Real McaMat::yieldAt(Real eqps, Real rate, Real temperature) const
 {
+	const auto need = [](const char* what, Real v, bool ok, const char* range) {
+		if (!ok) throw mca::Error(string("McaMat.flowStress: ") + what + " = " + std::to_string(v) + " must be " + range + ".");
+	};
+	need("plasticStrain", eqps, eqps >= 0 && eqps <= 1e6, "from 0 to 1e6");
+	need("rate", rate, rate > 0 && rate <= 1e30, "above 0 and at most 1e30 [1/s]");
+	need("temperature", temperature, temperature > 0 && temperature <= 1e9, "above 0 and at most 1e9 [K]");
 	const mca::Material m = toMaterial();
 	Real                Y = 0;
 	mca::dispatch(m.yield.kind, [&](auto kind) {
@@ -69,7 +75,11 @@ Real McaMat::yieldAt(Real eqps, Real rate, Real temperature) const
 	return Y;
 }
 
-Real McaMat::pressureAt(Real volumeRatio) const { return mca::pressure(toMaterial().eos, volumeRatio - 1.); }
+Real McaMat::pressureAt(Real volumeRatio) const 
+{
+	if (!(volumeRatio > 0 && volumeRatio <= 1e6)) throw mca::Error("McaMat.pressure: volumeRatio = " + std::to_string(volumeRatio) + " must be above 0 and at most 1e6.");
+	return mca::pressure(toMaterial().eos, volumeRatio - 1.);
+}
 
 shared_ptr<State> McaMat::newAssocState() const
 {

@@ -147,7 +147,7 @@ bool Law2_ScGeom_McaPhys_Mca::go(shared_ptr<IGeom>& geom, shared_ptr<IPhys>& phy
 {
 	auto& p = static_cast<McaPhys&>(*phys);
 	if (!(range >= 1.1 && range <= 10)) {
-		McaPhys::leaveError("Law2_ScGeom_McaPhys_Mca: range = " + std::to_string(range) + " must be from 1.1 to 10.");
+		McaPhys::leaveError("Law2_ScGeom_McaPhys_Mca in O.engines: range = " + std::to_string(range) + " must be from 1.1 to 10.");
 		return true;
 	}
 	const Body &A = *scene->bodies->body[I->getId1()], &B = *scene->bodies->body[I->getId2()];

@@ -57,7 +57,7 @@ def speedAlong(velocity, direction):
 	n[:len(given)] = given
 	length = math.sqrt(float(n @ n))
 	if not 0 < length < math.inf or n[velocity.shape[1]:].any():
-		raise ValueError('direction must not be zero, and in the plane for velocities in the plane; got %r' % (direction, ))
+		raise ValueError('direction (or normal) must not be zero, and in the plane for velocities in the plane; got %r' % (direction, ))
 	return velocity @ (n[:velocity.shape[1]] / length)
 
 

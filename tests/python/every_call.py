@@ -108,7 +108,7 @@ def run(study=False, only='', report=None):
 			todo = now[len(done):] + later
 			if how in ('crash', 'hang') and results and results[-1]['kind'] == 'nothing':  # nothing else can be told from this there
 				group = results[-1]['name'].split(' = ')[0], results[-1]['name'].split(' | ')[1]
-				todo = [k for k in todo if (calls[k].name.split('.')[0], calls[k].name.split(' | ')[1]) != group]
+				todo = [k for k in todo if (calls[k].name.split('.')[0], calls[k].name.partition(' | ')[2]) != group]
 			if report: report(results)
 	return results
 

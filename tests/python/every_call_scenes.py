@@ -21,7 +21,7 @@ def twoBlocks():
 	m = metal()
 	at = lambda x, y, w, h: packings.hexagonal(D, packings.Rectangle((x * D, y * D), (w * D, h * D)), rim='full')
 	packings.addBodies(at(0, 0, 4, 3), m, velocity=(0, 0), mask=1)
-	packings.addBodies(at(0, 2.6, 2, 1), m, velocity=(3, -40), mask=2)
+	packings.addBodies(at(0, 2.6, 2, 1), m, velocity=(3, -40), mask=3)
 
 
 def engineScene(reuse=None):
@@ -145,13 +145,9 @@ def steps(n=2):
 
 
 def stop():
-	"""Ends a run in the background between two steps. After O.pause() the thread is still in its step, and O.reset() takes away what it works on."""
+	"""Ends a run in the background between two steps."""
 	from yade import O
-	while O.running:
-		O.stopAtIter = O.iter + 30
-		time.sleep(2e-3)
-	O.stopAtIter = 0
-	time.sleep(5e-4)
+	O.pause()
 
 
 def before(build, find):
