@@ -21,7 +21,7 @@ def twoBlocks():
 	m = metal()
 	at = lambda x, y, w, h: packings.hexagonal(D, packings.Rectangle((x * D, y * D), (w * D, h * D)), rim='full')
 	packings.addBodies(at(0, 0, 4, 3), m, velocity=(0, 0), mask=1)
-	packings.addBodies(at(0, 2.6, 2, 1), m, velocity=(3, -40), mask=2)
+	packings.addBodies(at(0, 2.6, 2, 1), m, velocity=(3, -40), mask=3)
 
 
 def engineScene(reuse=None):
