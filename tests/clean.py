@@ -176,6 +176,7 @@ class Root:
 			typed = command if own else re.sub(r'\b(?=pyscripts/|pyscripts\b|ball\.py)', self.tree + '/', command)
 			start = time.time()
 			status, text = self.shell(user, typed, self.tree if own else self.home[user])
+			if status and re.search('E: (Failed to fetch|Unable to fetch|Some index files failed)', text): raise Skipped('the mirror of packages stopped answering at `%s`' % typed)
 			good = status == FAILS.get(command, 0) and 'Traceback' not in text
 			self.count(user, typed, time.time() - start, good, text)
 
