@@ -134,7 +134,7 @@ void McaDensity::checkState(const Row& r) const
 	need("strength", m.strength, m.strength > 0 && m.strength <= 1e9, "above 0 and at most 1e9");
 	need("plasticStrain", m.plasticStrain, m.plasticStrain >= 0 && m.plasticStrain <= 1e6, "from 0 to 1e6");
 	need("temperature", m.temperature, m.temperature >= 0 && m.temperature <= 1e9, "from 0 to 1e9 [K]");
-	need("dissipated", m.dissipated, std::fabs(m.dissipated) < 1e30, "finite and below 1e30 [J/kg]");
+	need("dissipated", m.dissipated, m.dissipated >= 0 && m.dissipated < 1e30, "not negative and below 1e30 [J/kg]");
 	need("pressure", m.pressure, std::isfinite(m.pressure), "finite");
 	need("volumeRatio", m.volumeRatio, m.volumeRatio > 0 && std::isfinite(m.volumeRatio), "finite and above zero");
 	need("stressZZ", m.stressZZ, std::isfinite(m.stressZZ), "finite");

@@ -22,6 +22,16 @@ void McaSolverEngine::action()
 	});
 }
 
+namespace {
+	const std::thread::id firstThread = std::this_thread::get_id(); // that imports the plugin
+}
+
+bool McaSolverEngine::inLoop()
+{
+	const auto me = std::this_thread::get_id();
+	return lastStep.load(std::memory_order_relaxed) == me && (me != firstThread || !Omega::instance().isRunning());
+}
+
 void McaSolverEngine::settle(Scene* scene)
 {
 	for (const auto& e : scene->engines)
@@ -38,7 +48,8 @@ void McaSolverEngine::settleNow()
 void McaSolverEngine::endStepUnderWay()
 {
 	const shared_ptr<Scene> now = Omega::instance().getScene();
-	if (!now || inLoop() || now->subStepping) return;
+	const bool first = std::this_thread::get_id() == firstThread;
+	if (!now || (!first && inLoop()) || now->subStepping) return; // a PyRunner; a script that makes parts of steps itself
 	PyThreadState* state = PyEval_SaveThread();
 	const long     before = failures;
 	// a step that ends with an error leaves subStep where it was: those of this plugin are counted, those of other engines cost the longest wait
@@ -46,6 +57,8 @@ void McaSolverEngine::endStepUnderWay()
 		if (const_cast<volatile int&>(now->subStep) < 0 || Omega::instance().isRunning()) break;
 		std::this_thread::sleep_for(std::chrono::microseconds(100));
 	}
+	// the loop's thread has some lines of YADE's to go, which look at the scene: a script may reset it next
+	std::this_thread::sleep_for(std::chrono::milliseconds(2));
 	PyEval_RestoreThread(state);
 	settleNow();
 }

@@ -33,8 +33,8 @@ public:
 	static void settle(Scene* scene);
 	/// settle() of the present scene, from Python.
 	static void settleNow();
-	/// The thread that has made the last step of an engine of the plugin is this one.
-	static bool inLoop() { return lastStep.load(std::memory_order_relaxed) == std::this_thread::get_id(); }
+	/// This thread makes the steps: a PyRunner runs in it. Python's first thread makes them in O.step() only, when no loop runs.
+	static bool inLoop();
 	static void endStepUnderWay();
 
 	/// f() with nobody else inside this engine: a step and each call from Python exclude each other. Python's global lock is given up meanwhile, since

@@ -145,9 +145,14 @@ def steps(n=2):
 
 
 def stop():
-	"""Ends a run in the background between two steps."""
+	"""Ends a run in the background between two steps. Right after O.pause() YADE's thread may still look at the scene, which O.reset() takes away."""
 	from yade import O
-	O.pause()
+	O.stopAtIter = O.iter + 300
+	while O.running:
+		if O.iter > O.stopAtIter: O.stopAtIter = O.iter + 3000  # it had passed before it was set
+		time.sleep(1e-3)
+	O.stopAtIter = 0
+	time.sleep(5e-3)
 
 
 def before(build, find):

@@ -10,7 +10,7 @@ NOT_OURS = {'timingDeltas', 'dispIndex', 'dispHierarchy', 'bases'}
 #: methods that are refused in the first scene, for a reason
 LATE = {'McaGridEngine.gauge': 'there is no gauge yet', 'Engine.__call__': 'half of a step by itself', 'McaSolverEngine': 'a base class'}
 #: classes whose objects go with their bodies
-OF_BODIES = ('McaMat', 'McaState', 'State', 'FrictMat', 'ElastMat', 'Material', 'NormPhys', 'NormShearPhys', 'McaPhys')
+OF_BODIES = ('Law2_ScGeom_McaPhys_Mca', 'McaMat', 'McaState', 'State', 'FrictMat', 'ElastMat', 'Material', 'NormPhys', 'NormShearPhys', 'McaPhys')
 #: moments at which the steps may be refused without any call
 MAY_FAIL = ('foreign', 'halfMade', 'noState', 'emptyScene', 'erased', 'afterReset')
 #: other words by which a message may call an attribute or argument
