@@ -16,7 +16,7 @@ Account Solver::account() const
 		const Material& m = S.materialOf(S.blocks[b]);
 		for (int l = 0; l < S.blocks[b].count; l++) {
 			const size_t i = b * blockSize + l;
-			v += m.eos.mieGrueneisen ? S.cell[i] * m.eos.rho0 * S.heat[i] : stateEnergy(i, S.J[i]);
+			v += m.eos.heats() ? S.cell[i] * m.eos.rho0 * S.heat[i] : stateEnergy(i, S.J[i]);
 			if (S.jOff[i] > 0. && S.blocks[b].contact) v += stateEnergy(i, 1. / (1. + scratch.sum[i] / nLinks)); // affine rule: contacts have a volume of their own
 			q += deviatoricEnergy(i);
 			if (S.flags[i] & tiedBit) { // its mass is on the grid; a free spin is its own

@@ -3,17 +3,18 @@
 
 namespace mca::automata {
 namespace {
-	template <VolumeRule rule, bool intact, bool mixed, bool mie> void run(Store& S, size_t b, const double* contactSum, bool init, BlockResult& out)
+	template <VolumeRule rule, bool intact, bool mixed, EosKind law> void run(Store& S, size_t b, const double* contactSum, bool init, BlockResult& out)
 	{
 		const Block&    B    = S.blocks[b];
 		const Eos       eos  = S.materialOf(B).eos;
+		constexpr bool  hot  = LawOf<law>::heats;
 		const double    d    = S.species[B.species].d, G43 = S.materialOf(B).G * (4. / 3.), invRho = 1. / eos.rho0;
 		const size_t    base = b * blockSize;
 		const double *  X = S.x.data(), *Y = S.y.data(), *D = S.diameter.data();
 		const int32_t*  nb    = S.neighbour.data() + b * nLinks * blockSize;
 		const int32_t*  flags = S.flags.data() + base;
 		const double *  xi = X + base, *yi = Y + base, *cell = S.cell.data() + base, *invN = S.invN.data() + base;
-		double*         heat = mie ? S.heat.data() + base : nullptr;
+		double*         heat = hot ? S.heat.data() + base : nullptr;
 		double *        rest = S.rest.data() + base, *J = S.J.data() + base, *dTheta = S.dTheta.data() + base, *P = S.P.data() + base, *h = S.h.data() + base;
 		alignas(64) double sums[blockSize], stiff[blockSize];
 		double          nearest = 1e300;
@@ -44,7 +45,7 @@ namespace {
 			for (int l = 0; l < blockSize; l++)
 				sums[l] += contactSum[base + l];
 		double stiffest = 0, closing = 0, widest = 1.;
-		const double clampAt = eos.clampStrain();
+		const double clampAt = LawOf<law>::clampStrain(eos);
 		int clampCount = 0, badCount = 0;
 #pragma omp simd reduction(max : stiffest, closing, widest) reduction(+ : clampCount, badCount)
 		for (int l = 0; l < blockSize; l++) {
@@ -52,11 +53,13 @@ namespace {
 			const double Jo  = init ? Jn : J[l];
 			const double eps = Jn - 1.;
 			dTheta[l]        = 2. * (Jn - Jo) / (Jn + Jo);
-			const double p   = mie ? pressureWithWork(eos, eps, Jn - Jo, P[l], heat[l]) : pressure(eos, eps);
+			double       p   = 0;
+			if constexpr (hot) p = pressureWithWork<law>(eos, eps, Jn - Jo, P[l], heat[l]);
+			else p = pressure<law>(eos, eps);
 			J[l]             = Jn;
 			P[l]             = p;
 			h[l]             = pressureShare<rule, 2>(p, Jn, cell[l] * invN[l]);
-			stiff[l]         = (tangent(eos, eps) + G43) * invRho / Jn;
+			stiff[l]         = (tangent<law>(eos, eps) + G43) * invRho / Jn;
 			stiffest         = max(stiffest, stiff[l]);
 			closing          = max(closing, -dTheta[l]);
 			widest           = max(widest, Jn);
@@ -73,20 +76,21 @@ namespace {
 	/// The affine rule: F = sum r (x) e_k / (3 d), J = jOff det F, exact in any homogeneous deformation of any arrangement of two or more links,
 	/// and without geometric stiffness under pressure. Contacts have a volume of their own, by rule (5): it pushes from the first touch, whatever
 	/// the links hold; an automaton without links has no other.
-	template <bool intact, bool mie> void runAffine(Store& S, size_t b, const double* contactSum, bool init, BlockResult& out)
+	template <bool intact, EosKind law> void runAffine(Store& S, size_t b, const double* contactSum, bool init, BlockResult& out)
 	{
 		const Block&    B    = S.blocks[b];
 		const Eos       eos  = S.materialOf(B).eos;
+		constexpr bool  hot  = LawOf<law>::heats;
 		const double    d = S.species[B.species].d, G43 = S.materialOf(B).G * (4. / 3.), invRho = 1. / eos.rho0, d2 = d * d, scale = 1. / (9. * d2);
 		const size_t    base = b * blockSize;
 		const double *  node = S.node.data(), *xi = S.x.data() + base, *yi = S.y.data() + base;
 		const int32_t * nb = S.neighbour.data() + b * nLinks * blockSize, *flags = S.flags.data() + base;
 		const double*   cell = S.cell.data() + base;
-		double*         heat = mie ? S.heat.data() + base : nullptr;
+		double*         heat = hot ? S.heat.data() + base : nullptr;
 		double *        J = S.J.data() + base, *dTheta = S.dTheta.data() + base, *P = S.P.data() + base, *h = S.h.data() + base, *jOff = S.jOff.data() + base;
 		double *        rest = S.rest.data() + base, *record = S.node.data() + base * 8, *push = S.push.data() + base * 4;
 		double          nearest = 1e300, stiffest = 0, closing = 0, widest = 1.;
-		const double    clampAt = eos.clampStrain();
+		const double    clampAt = LawOf<law>::clampStrain(eos);
 		int             clampCount = 0, badCount = 0;
 		alignas(64) double txx[blockSize], txy[blockSize], tyx[blockSize], tyy[blockSize], near[blockSize], spanX[blockSize], spanXY[blockSize], spanY[blockSize];
 		for (int g = 0; g < blockSize; g += lanes) {
@@ -125,12 +129,12 @@ namespace {
 			const double Jn  = off > 0. ? off * det + rest[l] : 1. / (1. + c);
 			const double Jo = init ? Jn : J[l], eps = Jn - 1.;
 			dTheta[l]      = 2. * (Jn - Jo) / (Jn + Jo);
-			double p = pressure(eos, eps);
-			if (mie) { // contacts push by the cold curve alone: so does an automaton without links work, and its internal energy keeps the rest
+			double p = pressure<law>(eos, eps);
+			if constexpr (hot) { // contacts push by the cold curve alone: so does an automaton without links work, and its internal energy keeps the rest
 				double       e = heat[l];
-				const double hot = pressureWithWork(eos, eps, Jn - Jo, P[l], e), work = 0.5 * (P[l] + p) * (Jn - Jo) * invRho;
+				const double inner = pressureWithWork<law>(eos, eps, Jn - Jo, P[l], e), work = 0.5 * (P[l] + p) * (Jn - Jo) * invRho;
 				heat[l] = off > 0. ? e : heat[l] - work;
-				p       = off > 0. ? hot : p;
+				p       = off > 0. ? inner : p;
 			}
 			J[l] = Jn;
 			P[l]           = p;
@@ -140,7 +144,7 @@ namespace {
 			const double exx = intact ? 3. : spanX[l], exy = intact ? 0. : spanXY[l], eyy = intact ? 3. : spanY[l];
 			const double spread = exx * (Fyy * Fyy + Fyx * Fyx) - 2. * exy * (Fyy * Fxy + Fyx * Fxx) + eyy * (Fxy * Fxy + Fxx * Fxx);
 			const double one = max(off * off * spread * scale * (1. / 6.), 1.), bulk = max(min(one * one, 4.), one); // covers edges and corners of free surfaces up to nu = 0.49, measured; beyond 4 what is torn and sheared
-			stiffest          = max(stiffest, (tangent(eos, eps) * bulk + G43 * max(0.5 * d2 / near[l], 1.)) * invRho / Jn);
+			stiffest          = max(stiffest, (tangent<law>(eos, eps) * bulk + G43 * max(0.5 * d2 / near[l], 1.)) * invRho / Jn);
 			closing  = max(closing, -dTheta[l]);
 			widest   = max(widest, Jn);
 			nearest  = min(nearest, near[l] / d2);
@@ -155,8 +159,8 @@ namespace {
 #pragma omp simd reduction(max : stiffest) reduction(+ : clampCount)
 			for (int l = 0; l < blockSize; l++) {
 				const double Jc = 1. / fma(contactSum[base + l], 1. / nLinks, 1.), eps = Jc - 1.;
-				h[l]            = pressureShare<VolumeRule::inversePower, 2>(pressure(eos, eps), Jc, cell[l] * (1. / nLinks));
-				stiffest        = max(stiffest, (tangent(eos, eps) + G43) * invRho / Jc);
+				h[l]            = pressureShare<VolumeRule::inversePower, 2>(pressure<law>(eos, eps), Jc, cell[l] * (1. / nLinks));
+				stiffest        = max(stiffest, (tangent<law>(eos, eps) + G43) * invRho / Jc);
 				clampCount += eps < clampAt ? 1 : 0;
 			}
 		}
@@ -165,27 +169,21 @@ namespace {
 			for (int l = 0; l < B.count && out.bad < 0; l++)
 				if (!(J[l] > 0. && J[l] < 1e6)) out.bad = int64_t(base) + l;
 	}
-	template <VolumeRule rule, bool intact, bool mixed> void chooseMie(Store& S, size_t b, const double* c, bool init, BlockResult& out)
-	{
-		if (S.materialOf(S.blocks[b]).eos.mieGrueneisen) run<rule, intact, mixed, true>(S, b, c, init, out);
-		else run<rule, intact, mixed, false>(S, b, c, init, out);
-	}
-	template <VolumeRule rule> void choose(Store& S, size_t b, const double* c, bool init, BlockResult& out)
+	template <VolumeRule rule, EosKind law> void choose(Store& S, size_t b, const double* c, bool init, BlockResult& out)
 	{
 		const Block& B = S.blocks[b];
-		if (B.mixed) B.intact ? chooseMie<rule, true, true>(S, b, c, init, out) : chooseMie<rule, false, true>(S, b, c, init, out);
-		else B.intact ? chooseMie<rule, true, false>(S, b, c, init, out) : chooseMie<rule, false, false>(S, b, c, init, out);
+		if (B.mixed) B.intact ? run<rule, true, true, law>(S, b, c, init, out) : run<rule, false, true, law>(S, b, c, init, out);
+		else B.intact ? run<rule, true, false, law>(S, b, c, init, out) : run<rule, false, false, law>(S, b, c, init, out);
 	}
 }
 
 void densityPass(Store& S, size_t b, VolumeRule rule, const Extra& X, bool init, BlockResult& out)
 {
 	const double* c = S.blocks[b].contact ? X.contactSum : nullptr;
-	const bool mie = S.materialOf(S.blocks[b]).eos.mieGrueneisen;
-	if (rule == VolumeRule::affine) {
-		if (S.blocks[b].intact) mie ? runAffine<true, true>(S, b, c, init, out) : runAffine<true, false>(S, b, c, init, out);
-		else mie ? runAffine<false, true>(S, b, c, init, out) : runAffine<false, false>(S, b, c, init, out);
-	} else if (rule == VolumeRule::inversePower) choose<VolumeRule::inversePower>(S, b, c, init, out);
-	else choose<VolumeRule::meanDistance>(S, b, c, init, out);
+	dispatch(S.materialOf(S.blocks[b]).eos.kind, [&](auto law) {
+		if (rule == VolumeRule::affine) S.blocks[b].intact ? runAffine<true, law.value>(S, b, c, init, out) : runAffine<false, law.value>(S, b, c, init, out);
+		else if (rule == VolumeRule::inversePower) choose<VolumeRule::inversePower, law.value>(S, b, c, init, out);
+		else choose<VolumeRule::meanDistance, law.value>(S, b, c, init, out);
+	});
 }
 }

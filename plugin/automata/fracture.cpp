@@ -155,7 +155,7 @@ void Solver::settleVolumes()
 				if (!holds || !near(c)) contacts.rest[c] = std::min(r0, contacts.d[c]);
 				else contacts.rest[c] = mean ? r0 / (1. + need) : r0 * std::sqrt(1. + need);
 			}
-		const bool heat = S.materials[S.species[S.speciesOf(i)].material].eos.mieGrueneisen; // its volumetric energy is in the heat
+		const bool heat = S.materials[S.species[S.speciesOf(i)].material].eos.heats(); // its volumetric energy is in the heat
 		if (options.account && holds) sums.fracture += affine ? stateEnergy(i, Jc) : 0.;
 		if (options.account && !holds && !heat) sums.fracture += stateEnergy(i, J);
 		if (holds) continue;

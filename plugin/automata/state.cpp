@@ -10,7 +10,7 @@
 
 namespace mca::automata {
 namespace {
-	constexpr uint64_t magic = 0x4d43413041303033ULL; // layout of this file; change it with every change of the arrays
+	constexpr uint64_t magic = 0x4d43413041303033ULL ^ lawsVersion(); // layout of this file; change it with every change of the arrays
 
 	struct Writer {
 		std::string out;

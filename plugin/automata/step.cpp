@@ -142,7 +142,7 @@ void Solver::computeForces()
 	if (!S.heat.empty() && lastMove > 0)
 		eachAwake([&](size_t b) {
 			const Material& m = S.materialOf(S.blocks[b]);
-			if (m.eos.mieGrueneisen && m.viscosity.active()) viscousHeat(S, b, lastMove, account ? &works[b] : nullptr);
+			if (m.eos.heats() && m.viscosity.active()) viscousHeat(S, b, lastMove, account ? &works[b] : nullptr);
 		});
 	if (account) {
 		for (int32_t b : awake)

@@ -3,12 +3,12 @@
 
 namespace mca::automata {
 namespace {
-	/// Johnson-Cook's radial return of eight automata, if any of them is above its static yield stress; else shrink and flow stay as they are.
+	/// Radial return of eight automata by a law that is dear, if any of them is above its static yield stress; else shrink and flow stay as they are.
+	template <YieldKind kind>
 	void returnWhereAbove(const Yield& yield, const double* trial, const double* eqps, const double* temperature, double threeG, double dt, double* shrink, double* flow)
 	{
-		constexpr YieldKind kind = YieldKind::johnsonCook;
-		alignas(64) double  stress[lanes], slope[lanes];
-		double              over = 0;
+		alignas(64) double stress[lanes], slope[lanes];
+		double             over = 0;
 #pragma omp simd reduction(max : over)
 		for (int l = 0; l < lanes; l++) {
 			const StaticYield s = staticYield<kind>(yield, eqps[l], temperature[l]);
@@ -18,7 +18,7 @@ namespace {
 		if (!(over > 0.)) return;
 #pragma omp simd
 		for (int l = 0; l < lanes; l++) {
-			const Return r = radialReturn<kind>(yield, StaticYield { stress[l], slope[l] }, trial[l], threeG, dt);
+			const Return r = radialReturn<kind>(yield, StaticYield { stress[l], slope[l] }, trial[l], eqps[l], temperature[l], threeG, dt);
 			shrink[l] = r.scale, flow[l] = r.dEqps;
 		}
 	}
@@ -29,6 +29,7 @@ namespace {
 		const Block&    B = S.blocks[b];
 		const Material& m = S.materialOf(B);
 		const Yield     yield = m.yield;
+		using Law = LawOf<kind>;
 		const double    twoG = 2. * m.G, threeG = 3. * m.G, halfDt = 0.5 * dt, d = S.species[B.species].d;
 		const size_t    base = b * blockSize, slots = b * nLinks * blockSize;
 		const double*   node = S.node.data();
@@ -38,7 +39,7 @@ namespace {
 		double *        s = S.s.data() + slots, *tau = S.tau.data() + slots, *szz = S.szz.data() + base, *eqps = S.eqps.data() + base, *temp = S.temperature.data() + base;
 		alignas(64) double square[blockSize], factor[blockSize], old2[blockSize], oldNew[blockSize], coupleOld[blockSize], coupleNew[blockSize];
 		double          plastic = 0, couple = 0, heated = 0;
-		double*         heat   = m.eos.mieGrueneisen ? S.heat.data() + base : nullptr;
+		double*         heat   = m.eos.heats() ? S.heat.data() + base : nullptr;
 		const double    perRho = 1. / m.eos.rho0, sixth = Lattice<2>::cell(d) / nLinks;
 		for (int g = 0; g < blockSize; g += lanes) {
 			const v8 X = load(xi + g), Y = load(yi + g), VX = load(vxi + g), VY = load(vyi + g), W = load(wi + g), th = load(ti + g);
@@ -92,22 +93,22 @@ namespace {
 			zNew[l]   = fma(-twoG * (1. / 3.), ti[l], szz[l]); // (9)
 			trials[l] = std::sqrt(equivalentStress2<2>(square[l] * invN[l], zNew[l]));
 			most      = max(most, trials[l]);
-			if (kind == YieldKind::johnsonCook) hottest = max(hottest, temp[l]);
+			if (Law::heats) hottest = max(hottest, temp[l]);
 		}
 		alignas(64) double shrink[blockSize], flow[blockSize]; // of the radial return
 		const auto returnAll = [&](int from, int to) {
 #pragma omp simd
 			for (int l = from; l < to; l++) {
-				const Return r = radialReturn<kind>(yield, trials[l], eqps[l], 0., threeG, dt);
+				const Return r = radialReturn<kind>(yield, trials[l], eqps[l], Law::heats ? temp[l] : 0., threeG, dt);
 				shrink[l] = r.scale, flow[l] = r.dEqps;
 			}
 		};
 		// logarithms and powers are most of the cost: not where nobody reaches the yield stress of unstrained material at the highest temperature
-		if constexpr (kind == YieldKind::johnsonCook) {
+		if constexpr (Law::isDear) {
 			std::fill(shrink, shrink + blockSize, 1.), std::fill(flow, flow + blockSize, 0.);
 			if (most > staticYield<kind>(yield, 0., hottest).stress)
 				for (int g = 0; g < blockSize; g += lanes)
-					returnWhereAbove(yield, trials + g, eqps + g, temp + g, threeG, dt, shrink + g, flow + g);
+					returnWhereAbove<kind>(yield, trials + g, eqps + g, temp + g, threeG, dt, shrink + g, flow + g);
 		} else
 			returnAll(0, blockSize);
 #pragma omp simd reduction(+ : plastic, couple, heated)
@@ -116,8 +117,8 @@ namespace {
 			const Return r  = { shrink[l], flow[l] };
 			factor[l]       = r.scale * J[l];
 			szz[l]          = zn * r.scale;
-			if (kind != YieldKind::elastic) eqps[l] += r.dEqps;
-			if (kind == YieldKind::johnsonCook) temp[l] = fma(yield.heatPerWork * r.scale * trial, r.dEqps, temp[l]);
+			if (Law::yields) eqps[l] += r.dEqps;
+			if (Law::heats) temp[l] = fma(yield.heatPerWork * r.scale * trial, r.dEqps, temp[l]);
 			if (heat) {
 				const double q = J[l] * r.scale * trial * r.dEqps * perRho;
 				heat[l] += q, heated += q * cell[l];

@@ -7,7 +7,7 @@
 namespace mca::grid {
 
 namespace {
-	constexpr uint64_t formatVersion = 1;
+	constexpr uint64_t formatVersion = 1 ^ lawsVersion(); // changes with the laws and their constants
 
 	struct Writer {
 		static constexpr bool reading = false;
@@ -61,13 +61,7 @@ namespace {
 	}
 	template <class A> void io(A& a, Material& m)
 	{
-		io(a, m.eos.rho0), io(a, m.eos.c0), io(a, m.eos.b), io(a, m.eos.gamma0), io(a, m.eos.mieGrueneisen), io(a, m.eos.clampAt), io(a, m.G);
-		Yield& y = m.yield;
-		io(a, y.kind);
-		for (double* p : { &y.A, &y.B, &y.n, &y.C, &y.rate0, &y.m, &y.Tm, &y.T0, &y.heatPerWork }) io(a, *p);
-		Fracture& f = m.fracture;
-		for (double* p : { &f.strain, &f.spall, &f.pairStress, &f.mises, &f.ratio }) io(a, *p);
-		io(a, m.viscosity.linear), io(a, m.viscosity.quadratic), io(a, m.friction);
+		eachConstant(m, [&](auto& v) { io(a, v); });
 	}
 	template <class A, class T> void io(A& a, std::vector<T>& v)
 	{

@@ -122,9 +122,9 @@ void McaDensity::settleVolumes(bool account)
 			else s.p->rest[s.side] = mean ? r0 / (1. + need) : r0 * std::sqrt(1. + need);
 		}
 		if (account && holds) fracture += affine ? stateEnergy(r, Jc) : 0.;
-		if (account && !holds && !r.material->eos.mieGrueneisen) fracture += stateEnergy(r, J); // else it is in the heat
+		if (account && !holds && !r.material->eos.heats()) fracture += stateEnergy(r, J); // else it is in the heat
 		if (holds) continue;
-		if (affine && r.material->eos.mieGrueneisen) { // what the contacts' own volume (5) had stored is from now on part of the internal energy
+		if (affine && r.material->eos.heats()) { // what the contacts' own volume (5) had stored is from now on part of the internal energy
 			r.m->dissipated += stateEnergy(r, Jc) / (r.l->cell * r.material->eos.rho0);
 			r.m->pressure = mca::pressure(r.material->eos, Jc - 1.);
 		}
@@ -169,7 +169,7 @@ void McaDensity::filterVolumes(bool account)
 			for (const Side& s : r.link)
 				if (s.p->twoG > 0) pairs += (sqr(s.p->s[s.side]) + sqr(s.p->tau[s.side])) / (s.p->twoG * r.m->volumeRatio);
 			const Real held = G > 0 ? mca::Lattice<2>::cell(r.d) / nLinks * (pairs + r.m->volumeRatio * sqr(r.m->stressZZ) / (4. * G * r.l->invN)) : 0.;
-			coupling += (r.material->eos.mieGrueneisen ? 0. : stateEnergy(r, r.m->volumeRatio) - stateEnergy(r, J)) + held * (1. - ratio);
+			coupling += (r.material->eos.heats() ? 0. : stateEnergy(r, r.m->volumeRatio) - stateEnergy(r, J)) + held * (1. - ratio);
 		}
 		r.m->volumeRatio = J;
 		r.l->offset *= ratio;

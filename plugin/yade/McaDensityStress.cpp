@@ -80,7 +80,7 @@ void McaDensity::volume(Row& r, bool withContacts)
 	const Real eps = Jn - 1.;
 	l.dTheta       = 2. * (Jn - Jo) / (Jn + Jo);
 	Real P         = mca::pressure(eos, eps);
-	if (eos.mieGrueneisen) { // contacts push by the cold curve alone: so does an automaton without links work, and its internal energy keeps the rest
+	if (eos.heats()) { // contacts push by the cold curve alone: so does an automaton without links work, and its internal energy keeps the rest
 		if (!affine || l.offset > 0) P = mca::pressureWithWork(eos, eps, Jn - Jo, r.m->pressure, r.m->dissipated);
 		else r.m->dissipated -= 0.5 * (r.m->pressure + P) * (Jn - Jo) / eos.rho0;
 	}
@@ -155,8 +155,8 @@ void McaDensity::stress(Row& r)
 	mca::dispatch(material.yield.kind, [&](auto kind) { back = mca::radialReturn<kind.value>(material.yield, sigma, m.plasticStrain, m.temperature, threeG, dt); });
 	m.stressZZ = zn * back.scale;
 	m.plasticStrain += back.dEqps;
-	if (material.yield.kind == mca::YieldKind::johnsonCook) m.temperature = fma(material.yield.heatPerWork * back.scale * sigma, back.dEqps, m.temperature);
-	if (material.eos.mieGrueneisen) {
+	if (material.yield.heats()) m.temperature = fma(material.yield.heatPerWork * back.scale * sigma, back.dEqps, m.temperature);
+	if (material.eos.heats()) {
 		const Real q = J * back.scale * sigma * back.dEqps / material.eos.rho0;
 		m.dissipated += q;
 		r.heated = q * l.cell * material.eos.rho0;

@@ -98,7 +98,7 @@ void McaDensity::addForces(Scene* scene)
 		if (size_t(i) >= place.size() || place[size_t(i)] < 0) continue;
 		const Row& r = rows[size_t(place[size_t(i)])];
 		r.l->moved   = scene->dt;
-		if (r.material->eos.mieGrueneisen) { // the heat of the viscosity of links goes into the internal energy
+		if (r.material->eos.heats()) { // the heat of the viscosity of links goes into the internal energy
 			r.m->dissipated += s.linkHeat * lastMove / (r.material->eos.rho0 * r.l->cell);
 			if (scene->trackEnergy) heated += s.linkHeat * lastMove;
 		}
@@ -143,7 +143,7 @@ void McaDensity::stateEnergies(Scene& scene, Real& volumetric, Real& deviatoric,
 		if (it == seen.end()) seen.push_back(mat), constants.push_back(mat->toMaterial()), it = seen.end() - 1;
 		const auto& c = constants[size_t(it - seen.begin())];
 		const auto& l = *m->law;
-		volumetric += c.eos.mieGrueneisen ? l.cell * c.eos.rho0 * m->dissipated : l.cell * mca::storedEnergy(c.eos, m->volumeRatio - 1.);
+		volumetric += c.eos.heats() ? l.cell * c.eos.rho0 * m->dissipated : l.cell * mca::storedEnergy(c.eos, m->volumeRatio - 1.);
 		if (l.rule == int(mca::VolumeRule::affine) && l.offset > 0) volumetric += l.cell * mca::storedEnergy(c.eos, 1. / (1. + l.contactSum / nLinks) - 1.);
 		kinetic += 0.5 * (m->mass * m->vel.squaredNorm() + m->inertia[2] * sqr(m->angVel[2]));
 		centre += 0.5 * m->mass * (meanVelocity(scene, b->id, *m, -0.5).squaredNorm() - m->vel.squaredNorm());
