@@ -25,6 +25,8 @@ __all__ = ['Impact', 'ImpactError']
 COLUMNS = ('time', 'step', 'dt', 'lengthLoss', 'lengthLossUnbroken', 'velocityLossTail', 'velocityLossAll', 'tailVelocity', 'allVelocity', 'tailMass', 'clearance', 'momentum',
            'kinetic', 'stored', 'plastic', 'viscous', 'friction', 'fracture', 'grid', 'total', 'booked', 'momentumX', 'momentumY', 'deepest', 'clamped',
            'brokenLinks', 'contacts', 'awake')
+#: all that the scenes of this module run; a checkpoint with anything else (a PyRunner runs Python) is refused
+ENGINES = ('McaTimeStepper', 'McaEngine', 'McaGridEngine', 'McaGridCoupler')
 
 
 class ImpactError(RuntimeError):
@@ -183,8 +185,8 @@ class Impact:
 
 	@classmethod
 	def load(cls, path, until=None):
-		"""(Impact, extra) of a checkpoint; O becomes the saved scene. until: another end [s]. Raises checkpoint.CheckpointError."""
-		facts, arrays = checkpoint.read(path)
+		"""(Impact, extra) of a checkpoint; O becomes the saved scene. until: another end [s]. Raises checkpoint.CheckpointError, also when the scene holds other engines than ENGINES."""
+		facts, arrays = checkpoint.read(path, ENGINES)
 		engines = omega().engines
 		find = lambda name: [e for e in engines if type(e).__name__ == name]
 		s = scenes.Scene(automata=find('McaEngine')[0], grid=(find('McaGridEngine') or [None])[0], couplers=find('McaGridCoupler'),
