@@ -145,6 +145,7 @@ void McaGridCoupler::tieRow(Scene* scene)
 void McaGridCoupler::prepare(Scene* scene)
 {
 	find(scene);
+	if (loaded) checkTied(scene);
 	if (tied) return;
 	const auto couplers = all(scene);
 	try { // all rows first: nothing is tied unless every row fits
@@ -160,6 +161,21 @@ void McaGridCoupler::prepare(Scene* scene)
 	}
 	for (auto* c : couplers)
 		if (!c->tied) c->tieRow(scene);
+}
+
+// The row of a loaded scene against what it refers to.
+void McaGridCoupler::checkTied(Scene* scene)
+{
+	const auto refuse = [](int id, const char* what) { throw mca::Error("McaGridCoupler: the saved row does not belong to this scene: body " + std::to_string(id) + " " + what + "."); };
+	mca::interface::checkRow(row, foundGrid->grid().open().size());
+	if (foundAutomata) foundAutomata->ensureBuilt(scene);
+	if (foundAutomata && places.size() != row.size()) refuse(row.front().id, "has no place among the tied automata");
+	for (size_t k = 0; k < row.size(); k++) {
+		const int id = row[k].id;
+		if (size_t(id) >= scene->bodies->body.size() || !scene->bodies->body[size_t(id)] || !scene->bodies->body[size_t(id)]->state) refuse(id, "is not there");
+		if (foundAutomata && (places[k] < 0 || !foundAutomata->automata().isTied(size_t(places[k]), id))) refuse(id, "is not tied");
+	}
+	loaded = false;
 }
 
 void McaGridCoupler::forcesToNodes(Scene* scene)
@@ -245,7 +261,9 @@ void McaGridCoupler::postLoad(McaGridCoupler&)
 	sdk::BlobReader in(state);
 	in.get(row);
 	in.get(places);
-	tied = !row.empty();
+	in.end();
+	mca::interface::checkRow(row, std::numeric_limits<int>::max()); // against the grid: when it is used
+	tied = loaded = !row.empty();
 	state.clear();
 }
 

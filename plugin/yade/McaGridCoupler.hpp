@@ -57,11 +57,13 @@ private:
 	vector<mca::interface::Carried> row;
 	vector<long>                    places; ///< of each in the solver's order of tied automata
 	bool                            tied = false;
+	bool                            loaded = false; ///< from a file and not yet compared with what it refers to
 	shared_ptr<McaEngine>           foundAutomata;
 	shared_ptr<McaGridEngine>       foundGrid;
 	void                            find(Scene*);
 	void                            makeRow(Scene*);
 	void                            tieRow(Scene*);
+	void                            checkTied(Scene*);
 	vector<mca::interface::RowPoint> candidates(Scene*, vector<mca::Material>& keep) const;
 	void                            forcesToNodes(Scene*);
 	void                            motionToRow(Scene*, bool positions);
