@@ -114,9 +114,16 @@ public:
 	double equivalentStress(size_t i) const;
 	/// The automaton that limits the time step.
 	size_t stiffestAutomaton() const;
-	/// All state as bytes, and back; continuing is bit-identical. load throws Error on damaged data.
+	/// All state as bytes, and back; continuing is bit-identical. load throws Error and changes nothing when the bytes are no state:
+	/// every length, index, flag and number is checked. Damage that leaves a possible state is not seen: whoever keeps the bytes keeps a checksum.
 	std::string save() const;
 	void        load(const std::string& bytes);
+	/// Numbers of all automata, ascending.
+	std::vector<int> ids() const;
+	/// Throws Error unless `order` is ids(): what the caller keeps beside the saved state belongs to it.
+	void checkOrder(const std::vector<int>& order) const;
+	/// Whether automaton `id` was the t-th to be tied.
+	bool isTied(size_t t, int32_t id) const { return t < tied.size() && store.id[size_t(tied[t])] == id; }
 	/// The timers of counters run only when asked.
 	bool timing = false;
 
@@ -154,6 +161,7 @@ private:
 	double deviatoricEnergy(size_t i) const; ///< of links and szz [J/m]
 	template <class F> void eachAwake(F&& f);
 	template <class F> void archive(F&& f);
+	void                    checkState() const; ///< after loading: throws Error unless all fits together
 	[[noreturn]] void       overlapError(size_t i, size_t j, double ratio) const;
 
 	std::vector<int32_t>     place;

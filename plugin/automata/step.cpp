@@ -94,7 +94,10 @@ void Solver::computeForces()
 	}
 	const bool       contact = contacts.size() > 0, account = options.account;
 	const VolumeRule rule    = options.volumeRule;
-	Extra            X;
+	if (contact && account) // switched on since the last search
+		for (auto v : { &scratch.old, &scratch.volX, &scratch.volY, &scratch.visX, &scratch.visY })
+			v->resize(S.size(), 0.);
+	Extra X;
 	if (contact) X.contactSum = scratch.sum.data(), X.contactSq = scratch.square.data(), X.contactOld = scratch.old.data(), X.scale = scratch.scale.data(), X.contactFx = scratch.fx.data(), X.contactFy = scratch.fy.data(), X.contactT = scratch.torque.data();
 	if (account) {
 		for (auto v : { &accountForce.volX, &accountForce.volY, &accountForce.visX, &accountForce.visY })

@@ -57,14 +57,27 @@ void McaEngine::preSave(McaEngine&)
 	});
 }
 
+namespace {
+	/// What stands beside the solver's state must belong to it.
+	void checkLoaded(const mca::automata::Solver& solver, const vector<int>& order, const vector<Vector3r>& viscous)
+	{
+		solver.checkOrder(order);
+		for (const Vector3r& v : viscous)
+			if (!(v[0] >= 0 && v[0] < 2147483648. && v[0] == std::floor(v[0]) && v[1] >= 0 && v[2] >= 0 && std::isfinite(v[1] + v[2])))
+				throw mca::Error("McaEngine: the attribute 'viscous' in the file holds no body and coefficients of a viscous boundary; the file is damaged or was edited.");
+	}
+} // namespace
+
 void McaEngine::postLoad(McaEngine&)
 {
 	if (state.empty()) return;
 	vector<char>    bytes;
 	sdk::BlobReader in(state);
 	in.get(bytes);
+	in.end();
 	auto fresh = shared_ptr<mca::automata::Solver>(new mca::automata::Solver);
 	fresh->load(string(bytes.begin(), bytes.end()));
+	checkLoaded(*fresh, order, viscous);
 	solver = fresh;
 	home.reset(), bodies.clear(), same.clear(), known.clear();
 	looked = true, stale = false;

@@ -57,7 +57,8 @@ public:
 private:
 	vector<mca::interface::Carried> row;
 	vector<long>                    places; ///< of each in the solver's order of tied automata
-	bool                            tied = false, loaded = false;
+	bool                            tied = false;
+	bool                            loaded = false; ///< from a file and not yet compared with what it refers to
 	boost::weak_ptr<Scene>          home; ///< scene of the tied bodies
 	shared_ptr<McaEngine>           foundAutomata;
 	shared_ptr<McaGridEngine>       foundGrid;
@@ -68,6 +69,7 @@ private:
 	template <class F> void         inBoth(F&& f);
 	void                            makeRow(Scene*);
 	void                            tieRow(Scene*);
+	void                            checkTied(Scene*);
 	vector<mca::interface::RowPoint> candidates(Scene*, vector<mca::Material>& keep) const;
 	void                            forcesToNodes(Scene*);
 	void                            motionToRow(Scene*, bool positions);

@@ -74,6 +74,7 @@ void McaGridEngine::postLoad(McaGridEngine&)
 	vector<char>    bytes;
 	sdk::BlobReader in(state);
 	in.get(bytes);
+	in.end();
 	auto fresh = shared_ptr<mca::grid::Grid>(new mca::grid::Grid());
 	fresh->restore(bytes);
 	solver = fresh;

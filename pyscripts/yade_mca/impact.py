@@ -25,9 +25,8 @@ __all__ = ['Impact', 'ImpactError']
 COLUMNS = ('time', 'step', 'dt', 'lengthLoss', 'lengthLossUnbroken', 'lengthLossGeometric', 'velocityLossTail', 'velocityLossAll', 'tailVelocity', 'allVelocity', 'tailMass', 'clearance', 'momentum',
            'kinetic', 'stored', 'plastic', 'viscous', 'friction', 'fracture', 'grid', 'total', 'booked', 'momentumX', 'momentumY', 'deepest', 'clamped',
            'brokenLinks', 'contacts', 'awake')
-
-
-ENGINES = ('McaTimeStepper', 'McaEngine', 'McaGridEngine', 'McaGridCoupler')  #: of scenes.penetration()
+#: all that the scenes of this module run; a checkpoint with anything else (a PyRunner runs Python) is refused
+ENGINES = ('McaTimeStepper', 'McaEngine', 'McaGridEngine', 'McaGridCoupler')
 
 
 class ImpactError(RuntimeError):
@@ -187,16 +186,9 @@ class Impact:
 
 	@classmethod
 	def load(cls, path, until=None):
-		"""(Impact, extra) of a checkpoint; O becomes the saved scene. until: another end [s].
-
-		Raises checkpoint.CheckpointError, also where the scene holds engines that scenes.penetration() does not make: a PyRunner would run what it says. O is empty then.
-		"""
-		facts, arrays = checkpoint.read(path)
+		"""(Impact, extra) of a checkpoint; O becomes the saved scene. until: another end [s]. Raises checkpoint.CheckpointError, also when the scene holds other engines than ENGINES."""
+		facts, arrays = checkpoint.read(path, ENGINES)
 		engines = omega().engines
-		others = sorted({type(e).__name__ for e in engines} - set(ENGINES))
-		if others:
-			omega().reset()
-			raise checkpoint.CheckpointError("checkpoint '%s' holds engines that a penetration run does not have: %s; load it with yade_mca.checkpoint.read() if you trust where it comes from" % (path, ', '.join(others)))
 		find = lambda name: [e for e in engines if type(e).__name__ == name]
 		s = scenes.Scene(automata=find('McaEngine')[0], grid=(find('McaGridEngine') or [None])[0], couplers=find('McaGridCoupler'),
 		                 ids={k[4:]: v for k, v in arrays.items() if k.startswith('ids ')}, blocks=facts['scene']['blocks'], facts=facts['scene']['facts'])

@@ -46,7 +46,7 @@ def check(args):
 		except checkpoint.CheckpointError as e:
 			raise UsageError('--restart: %s' % e) from None
 		for k, v in args.saved['options'].items():
-			setattr(args, k, v)
+			if k.replace('_', '-') in options.SCENE: setattr(args, k, v)
 	if args.no_files or args.out:
 		return
 	args.out = os.path.dirname(os.path.abspath(args.restart)) if args.restart else os.path.join('results', '%s_%gmm' % (results.name(args).replace('/', '_'), args.spacing))
