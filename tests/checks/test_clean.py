@@ -45,20 +45,3 @@ def test_skippedWhereNoRootCanBeMade(tmp_path):
 	finally:
 		script.unlink()
 	assert done.returncode == 0 and done.stdout.splitlines()[0] == 'skipped: only root can make and enter a root' and done.stdout.endswith('\nclean: 0 passed, 0 failed\n'), done.stdout + done.stderr
-
-
-@pytest.mark.parametrize('tests, roots, line, status', [
-        (('7 passed, 0 failed', 0), ('clean: 5 passed, 0 failed', 0), '12 passed, 0 failed', 0),
-        (('7 passed, 1 failed', 1), ('clean: 5 passed, 0 failed', 0), '12 passed, 1 failed', 1),
-        (('7 passed, 0 failed', 0), ('clean: 5 passed, 2 failed', 1), '12 passed, 2 failed', 1),
-        (('7 passed, 0 failed', 0), ('skipped: no mount\nclean: 0 passed, 0 failed', 0), '7 passed, 0 failed', 0),
-])
-def test_continuousIntegrationAddsBoth(tmp_path, tests, roots, line, status):
-	(tmp_path / '.ci').mkdir()
-	(tmp_path / 'tests').mkdir()
-	shutil.copy(ROOT / '.ci' / 'run', tmp_path / '.ci')
-	run = tmp_path / 'tests' / 'run'
-	run.write_text('#!/bin/sh\nif [ "$1" = clean ]; then echo "%s"; exit %d; fi\necho "%s"; exit %d\n' % (*roots, *tests))
-	run.chmod(0o755)
-	done = subprocess.run([str(tmp_path / '.ci' / 'run')], capture_output=True, text=True, timeout=60)
-	assert done.stdout.splitlines()[-1] == line and done.returncode == status, done.stdout

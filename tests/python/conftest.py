@@ -9,7 +9,11 @@ import sys
 import types
 from pathlib import Path
 
+import hypothesis
 import pytest
+
+hypothesis.settings.register_profile('tests', deadline=None)  # a busy machine is no failure
+hypothesis.settings.load_profile('tests')
 
 HERE = Path(__file__).resolve().parent
 PACKAGE = HERE.parents[1] / 'pyscripts' / 'yade_mca'

@@ -36,7 +36,7 @@ INPUT = {
         'negative mass': (lambda k: setattr(state(k), 'mass', -1.), lambda k: setattr(state(k), 'mass', state(k + 1).mass), ['automaton {k}', 'mass -1', 'above zero']),
         'mass of a sphere': (lambda k: setattr(state(k), 'mass', 4e-6), lambda k: setattr(state(k), 'mass', state(k + 1).mass), ['body {k}', 'full cell', 'addBodies']),
         'no inertia': (lambda k: setattr(state(k), 'inertia', (0, 0, 0)), lambda k: setattr(state(k), 'inertia', state(k + 1).inertia), ['automaton {k}', 'inertia 0', 'block the rotation']),
-        'negative plastic strain': (lambda k: setattr(state(k), 'plasticStrain', -0.1), lambda k: setattr(state(k), 'plasticStrain', 0.), ['automaton {k}', '-0.1', 'not negative']),
+        'negative plastic strain': (lambda k: setattr(state(k), 'plasticStrain', -0.1), lambda k: setattr(state(k), 'plasticStrain', 0.), ['body {k}', '-0.1', 'from 0']),
         'coincident bodies': (lambda k: setattr(state(k), 'pos', state(k + 1).pos), lambda k: setattr(state(k), 'pos', state(k).refPos), ['automata', '{k} at', '{k+1} at', '0 rest distances', 'Remedy']),
         'negative slope': (lambda k: setattr(material(k), 'hugoniotSlope', -0.5), lambda k: setattr(material(k), 'hugoniotSlope', 1.3), ["material '4340'", 'hugoniotSlope', '-0.5', 'not negative']),
         'negative yield stress': (lambda k: setattr(material(k), 'yieldStress', -1e6), lambda k: setattr(material(k), 'yieldStress', 1e9), ["material '4340'", 'yieldStress', '-1e+06', 'not negative']),

@@ -56,7 +56,7 @@ try:
 		for entry in editor.entries:
 			# typing a number and leaving the field sets the attribute
 			w = entry.widget
-			if isinstance(w, numbers) and not entry.flags & 2:
+			if isinstance(w, numbers) and not entry.flags & 2 and entry.name not in ('young', 'poisson'):  # these follow from the others
 				old = getattr(thing, entry.name)
 				w.setText('0.75'); w.isHot(); w.update()
 				assert getattr(thing, entry.name) == 0.75, entry.name
