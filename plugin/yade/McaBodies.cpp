@@ -41,8 +41,17 @@ size_t materialIndex(const McaMat* m, vector<const McaMat*>& known, vector<mca::
 	return known.size() - 1;
 }
 
+void checkNumbers(const Scene& scene)
+{
+	const auto& bodies = scene.bodies->body;
+	for (size_t k = 0; k < bodies.size(); k++)
+		if (bodies[k] && (bodies[k]->id < 0 || size_t(bodies[k]->id) != k))
+			throw mca::Error("body " + std::to_string(bodies[k]->id) + " stands in the place of body " + std::to_string(k) + "; the saved scene is damaged or was edited.");
+}
+
 McaBodies::McaBodies(const Scene& scene, int seed)
 {
+	checkNumbers(scene);
 	for (const auto& b : scene.bodies->body)
 		if (isAutomaton(b)) add(*b, seed);
 }

@@ -10,6 +10,8 @@ class Scene;
 
 /// Material McaMat and shape Sphere.
 bool isAutomaton(const shared_ptr<Body>& b);
+/// Throws unless every body has the number of its place, as YADE gives it: numbers are used as indices.
+void checkNumbers(const Scene& scene);
 
 /// All automata of the scene, ascending ids. Strengths that are zero are drawn and stored in the states.
 struct McaBodies {

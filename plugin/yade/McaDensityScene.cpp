@@ -127,6 +127,7 @@ void McaDensity::takeIn(Scene* scene)
 void McaDensity::gather(Scene* scene)
 {
 	const auto& bodies = scene->bodies->body;
+	checkNumbers(*scene);
 	rows.clear();
 	place.assign(bodies.size(), -1);
 	bool      fresh = false, old = false;

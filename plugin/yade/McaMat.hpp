@@ -9,6 +9,7 @@ namespace yade {
 
 class McaLawState : public Serializable {
 public:
+	void postLoad(McaLawState&); ///< what is used as an index
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(McaLawState, Serializable, "What :yref:`McaDensity` keeps of an automaton from step to step.",
 		((int, flags, 0, Attr::readonly, "bits 0-5: link k holds; 8-13: it counts half; 16-21: it once held; 24: the automaton may touch something"))

@@ -58,6 +58,20 @@ namespace {
 	std::atomic<bool> anyError { false };
 } // namespace
 
+void McaPhys::postLoad(McaPhys&)
+{
+	if (slot < 0 || slot >= mca::automata::nLinks)
+		throw mca::Error("McaPhys: slot = " + std::to_string(slot) + " in the file must be from 0 to " + std::to_string(mca::automata::nLinks - 1) + "; the file is damaged or was edited.");
+}
+
+void McaLawState::postLoad(McaLawState&)
+{
+	const auto known = mca::automata::linkBits | mca::automata::halfBits | mca::automata::linkBits << mca::automata::hadShift | mca::automata::exposedBit;
+	if (!(partner.size() == size_t(mca::automata::nLinks) || (partner.empty() && flags == 0)) || (flags & ~known) || rule < 0 || rule > 2)
+		throw mca::Error("McaLawState: flags = " + std::to_string(flags) + ", rule = " + std::to_string(rule) + " and " + std::to_string(partner.size())
+		                 + " partners in the file are no links of an automaton; the file is damaged or was edited.");
+}
+
 void McaPhys::leaveError(const string& what)
 {
 	const std::lock_guard<std::mutex> lock(errorLock);
@@ -153,7 +167,12 @@ bool Law2_ScGeom_McaPhys_Mca::go(shared_ptr<IGeom>& geom, shared_ptr<IPhys>& phy
 	const Body &A = *scene->bodies->body[I->getId1()], &B = *scene->bodies->body[I->getId2()];
 	if (p.wall) return wallForce(static_cast<const ScGeom&>(*geom), p, A, B);
 
-	const McaLawState &a = *lawState(A), &b = *lawState(B);
+	const McaLawState *la = lawState(A), *lb = lawState(B);
+	if (!la || !lb) { // a file that was edited
+		McaPhys::leaveError("bodies " + std::to_string(A.id) + " and " + std::to_string(B.id) + " have the contact of two automata but are not both automata; the saved file was edited or damaged.");
+		return true;
+	}
+	const McaLawState &a = *la, &b = *lb;
 	const State &      sa = *A.state, &sb = *B.state;
 	const Real         dx = sb.se3.position[0] - sa.se3.position[0], dy = sb.se3.position[1] - sa.se3.position[1], r2 = dx * dx + dy * dy, inv = 1. / r2;
 	p.force = p.normalForce = p.shearForce = Vector3r::Zero();

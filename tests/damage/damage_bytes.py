@@ -8,6 +8,8 @@ import re
 import struct
 import zlib
 
+import damage_seals
+
 KIND = b'mca-blob'
 HEAD = struct.Struct('<8sIIQ24s')  # sdk/Blob.hpp: kind, format, checksum, length, version
 
@@ -43,6 +45,16 @@ def checksum(data):
 def contents(data):
 	"""The bytes of all arrays of a scene in the binary format."""
 	return [data[a:b] for a, b in blobs(data)]
+
+
+def stored(data, form):
+	"""The same of a file in any format; an .xml packs them in base64."""
+	if form != 'xml': return contents(data if form == 'yade' else _unpacked(data) if form == 'yade.gz' else _inside(data))
+	found = []
+	for a, b in xmlBlobs(data):
+		whole = b''.join(base64.b64decode(m[1]) for m in re.finditer(rb'<data>(.*?)</data>', data[a:b], re.S))
+		found.append(struct.pack('<Q', len(whole)) + whole)
+	return found
 
 
 def _change(random, data, at):
@@ -138,7 +150,8 @@ def _inside(data):
 def damage(random, form, data):
 	"""(damaged file, what was done, whether the first changed byte of the scene is the plugin's, whether a made-up state may be accepted)."""
 	if form == 'xml':
-		made = _xmlMadeRight(random, data) if random.random() < 0.25 else None
+		dice = random.random()
+		made = _xmlMadeRight(random, data) if dice < 0.2 else damage_seals.madeRight(random, data) if dice < 0.4 else None
 		if made: return made[0], made[1], True, True
 		spans = xmlBlobs(data)
 		bad, what = _inText(random, data, _place(random, spans, len(data)))

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Loads damaged files in processes forked for that, and tells what became of each: `damage_server.py FILE FORMAT COUNT SEED` prints JSON.
 
-What may come out: 'refused' (an error, by loading or in the two steps after it), 'same' (loaded, and the plugin's numbers are those that were saved), 'made up' (a state with a right
-checksum was let in), 'other' (loaded; YADE's part differs, ours does not). What must not: 'silent' (our numbers differ), 'crash', 'hang', 'memory' (above 1 GB, or the damage was ours and
-memory ran out).
+What may come out: 'refused' (an error, by loading or in the two steps after it), 'same' (loaded, and the plugin's numbers are those that were saved), and two kinds of other states:
+    made up     their checksum was made right: a number within its range is another valid state, no checksum can tell
+    taken over  our part of the file is as saved, but a position, velocity or mass that stock YADE stores is not, and the engine has taken it as a script's change
+What must not: 'silent' (our numbers differ), 'crash', 'hang', 'memory' (above 1 GB, or the damage was ours and memory ran out). Where the first damaged byte is YADE's, a crash
+or a large memory is that of YADE's reader, which follows the numbers of objects in a binary file without a look: counted apart.
 
 Our numbers are the arrays of the engines (sdk::Blob) and the attributes that the plugin's classes add to YADE's. A file is as saved in our part when each array and each object of ours
 in it holds bit for bit what one of those saved held. What stock YADE stores beside them (positions, stock attributes such as density, which object hangs on which) has no checksum in .yade
@@ -68,6 +70,12 @@ def ours():
 	return set(map(ownAttributes, (t for t in things if t is not None))) - {None} | set(damage_bytes.contents(O.sceneToString()))
 
 
+def takenOver(path, form, known, new):
+	"""Only the arrays differ, and those in the file do not."""
+	if not all(isinstance(n, bytes) for n in new): return False
+	return set(damage_bytes.stored(Path(path).read_bytes(), form)) == {n for n in known if isinstance(n, bytes)}
+
+
 def attempt(path, form, known, madeUp):
 	"""In the child: what becomes of the file."""
 	from yade import O
@@ -78,7 +86,7 @@ def attempt(path, form, known, madeUp):
 		return 'refused', 'MemoryError'
 	except Exception as e:
 		return 'refused', str(e)[:300]
-	verdict = 'same' if not new else 'made up' if madeUp else 'silent'
+	verdict = 'same' if not new else 'made up' if madeUp else 'taken over' if takenOver(path, form, known, new) else 'silent'
 	detail = ' '.join(str(n)[:200] for n in new) if new else ''
 	try:
 		O.run(2, True)
@@ -100,6 +108,7 @@ def child(cases, form, known, out):
 		verdict, detail = attempt(path, form, known, madeUp)
 		grown = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before
 		os.write(out, json.dumps((number, verdict, detail, grown)).encode() + b'\n')
+		if grown > LIMIT >> 12: break  # the peak would be counted for the next ones, too
 	os._exit(0)
 
 
@@ -128,7 +137,7 @@ def answers(cases, form, known):
 				batch.pop(0)
 		if batch and more is None: os.kill(pid, signal.SIGKILL)
 		_, status = os.waitpid(pid, 0)
-		if batch:
+		if batch and not (status == 0 and len(batch) < len(cases[:BATCH])):
 			number = batch.pop(0)[0]
 			yield (number, 'hang', '', 0) if more is None else (number, 'crash', 'signal %d' % os.WTERMSIG(status) if os.WIFSIGNALED(status) else 'status %d' % status, 0)
 		cases = batch + end
