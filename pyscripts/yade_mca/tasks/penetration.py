@@ -163,5 +163,4 @@ def finish(run, args, report, output, keeper, began, wall):
 	output.attempt(summary, report.write, summary)
 	print('%s, ParaView files (penetration.pvd), checkpoint and summary.json are in %s' % (
 	        ', '.join(['pictures', *['animation (penetration.gif)'] * (not args.no_animation), *['page (%s)' % PAGE] * (not args.no_page)]), os.path.abspath(args.out)))
-	if output.failures:
-		raise OSError('%d files could not be written: %s' % (len(output.failures), '; '.join("'%s': %s" % f for f in output.failures.items())))
+	output.attempt.finish()
