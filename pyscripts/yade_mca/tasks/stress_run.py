@@ -2,7 +2,6 @@
 """Runs stress cases in child processes, so that a case that kills its process costs that case only: start and outcome of each go through a file."""
 import json
 import math
-import os
 import signal
 import subprocess
 import sys
