@@ -29,6 +29,8 @@ public:
 	/// Whether a coupler of the scene drives this engine, into `coupled`; couplers tie their rows here, before anything moves.
 	/// Throws mca::Error: the engine stands twice in O.engines, several set O.dt, the coupler of its rows is gone, a periodic scene.
 	void findCoupler(Scene* scene);
+	/// O.dt shortened to this stable step [s] while nothing has used the longer one in this step; false when there is no time stepper that could.
+	bool shortenStep(Scene* scene, Real limit) const;
 	/// bringUpToDate() of all engines of the scene.
 	static void settle(Scene* scene);
 	/// settle() of the present scene, from Python.
