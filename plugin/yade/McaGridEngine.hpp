@@ -58,9 +58,18 @@ public:
 	{
 		return locked([&] { return grid().criticalCell(); });
 	}
-	Real       awake() const { return solver ? solver->awakeFraction() : 0.; }
-	Real       time() const { return solver ? solver->time() : 0.; }
-	long       steps() const { return solver ? solver->steps() : 0; }
+	Real awake() const
+	{
+		return locked([&] { return solver ? solver->awakeFraction() : 0.; });
+	}
+	Real time() const
+	{
+		return locked([&] { return solver ? solver->time() : 0.; });
+	}
+	long steps() const
+	{
+		return locked([&] { return solver ? solver->steps() : 0L; });
+	}
 	long       cellCount() const;
 
 	// clang-format off
