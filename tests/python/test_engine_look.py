@@ -204,6 +204,25 @@ def test_everyKindOfChangeIsReadAtOnce(plugin, attribute, value, quantity):
 	assert e.fields([quantity])[quantity][7] == (wanted[0] if attribute in ('pos', 'vel') else wanted)
 
 
+@pytest.mark.parametrize('attribute, value', [('vel', (7., 0, 0)), ('pos', (1e-6, 0, 0)), ('angVel', (0, 0, 5.)), ('temperature', 333.), ('plasticStrain', 0.02)])
+def test_aChangeWhileTheBodiesAreNotUpToDateIsToldAsLost(plugin, attribute, value):
+	"""Unless reload() follows it. Which step would have met it is chance, so it is not taken over silently."""
+	from yade import O
+	ids = scene.block(6, 6, velocity=(5., 1.))
+	scene.engine(1e-9)
+	state = O.bodies[int(ids[7])].state
+	O.run()
+	while O.iter < 20: pass
+	setattr(state, attribute, value)
+	meets = O.iter + 20
+	while O.iter < meets: pass
+	O.pause()
+	with pytest.raises(RuntimeError, match='body %d was changed by a script while the loop ran in the background' % ids[7]):
+		O.run(1, True)
+	assert abs(np.array(getattr(state, attribute)) - value).max() > 1e-9  # what the engine holds
+	O.run(3, True)
+
+
 def test_aBodyKeepsItsOrientationAndTurns(plugin):
 	"""The quaternion is made anew only when the angle has changed."""
 	from yade import O
