@@ -32,6 +32,29 @@ namespace {
 
 bool isAutomaton(const shared_ptr<Body>& b) { return b && b->material && castTo<McaMat>(b->material.get()) && castTo<Sphere>(b->shape.get()); }
 
+void refuseBody(const Body& b, const string& what) { throw mca::Error("McaEngine: body " + std::to_string(b.id) + ": " + what); }
+
+string numberText(Real v)
+{
+	std::ostringstream s;
+	s << v;
+	return s.str();
+}
+
+void checkMotion(const Body& b)
+{
+	const State& s = *b.state;
+	const auto&  x = s.se3.position;
+	const Real   reach = 2e9 * static_cast<const Sphere*>(b.shape.get())->radius;
+	if (!(s.vel.cwiseAbs().maxCoeff() < 1e100 && s.angVel.cwiseAbs().maxCoeff() < 1e100)) refuseBody(b, "vel or angVel is not finite; give finite numbers below 1e100 [m/s], [rad/s].");
+	if (!(std::fabs(s.se3.orientation.coeffs().squaredNorm() - 1.) < 0.1)) refuseBody(b, "ori is no rotation; it must be a quaternion of norm 1.");
+	if (!x.allFinite() || !s.vel.allFinite() || !s.angVel.allFinite() || !s.se3.orientation.coeffs().allFinite())
+		refuseBody(b, "position, velocity, angular velocity or orientation is not finite; give finite numbers.");
+	if (s.vel[2] != 0 || s.angVel[0] != 0 || s.angVel[1] != 0)
+		refuseBody(b, "velocity z = " + numberText(s.vel[2]) + " m/s, angular velocity x, y = " + numberText(s.angVel[0]) + ", " + numberText(s.angVel[1]) + " rad/s; in plane strain (x, y) they must be 0.");
+	if (!(std::fabs(x[0]) < reach && std::fabs(x[1]) < reach)) refuseBody(b, "position (" + numberText(x[0]) + ", " + numberText(x[1]) + ") m must be within 1e9 diameters of the origin.");
+}
+
 size_t materialIndex(const McaMat* m, vector<const McaMat*>& known, vector<mca::Material>& materials)
 {
 	const auto it = std::find(known.begin(), known.end(), m);

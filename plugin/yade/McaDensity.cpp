@@ -110,6 +110,7 @@ void McaDensity::step()
 				plastic += r.plastic, coupling += r.coupling, frictional += r.friction, heated += r.heated;
 	}
 	if (scene->dt > 0 && scene->dt <= dtLimit && std::isfinite(scene->dt)) return;
+	if (scene->dt > dtLimit && shortenStep(scene, dtLimit)) return;
 	std::ostringstream o;
 	if (scene->dt > dtLimit) o << "McaDensity: O.dt = " << scene->dt << " s is above the largest stable step " << dtLimit << " s of body " << stiffest;
 	else o << "McaDensity: O.dt = " << scene->dt << " s must be finite and above zero; the largest stable step is " << dtLimit << " s";

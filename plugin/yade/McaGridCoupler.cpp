@@ -359,6 +359,7 @@ py::dict McaGridCoupler::energies()
 		c->prepare(now);
 		c->inBoth([&] {
 		if (c->foundAutomata && done.insert(c->foundAutomata.get()).second) {
+			c->foundAutomata->refresh(now); // what a script has changed counts already
 			const auto a = c->foundAutomata->automata().account();
 			kinetic += a.kinetic, total += a.total(), booked += a.bookedError(), px += a.px, py_ += a.py, jx += a.impulseX, jy += a.impulseY, turn += a.angular;
 		}

@@ -84,9 +84,11 @@ void McaGridEngine::postLoad(McaGridEngine&)
 
 long McaGridEngine::cellCount() const
 {
-	long n = 0;
-	for (int b = 0; solver && b < solver->blocks(); b++)
-		n += long(solver->block(b).ni) * solver->block(b).nj;
-	return n;
+	return locked([&] {
+		long n = 0;
+		for (int b = 0; solver && b < solver->blocks(); b++)
+			n += long(solver->block(b).ni) * solver->block(b).nj;
+		return n;
+	});
 }
 } // namespace yade

@@ -114,21 +114,22 @@ class Impact:
 
 	def _sample(self):
 		s, o, r = self.scene, omega(), self.record
-		v, e = s.vectors('rod', 'vx', 'vy'), s.field('rod', 'plasticStrain')
-		position = s.vectors('rod', 'x', 'y')
+		f = s.fields('rod', ('mass', 'x', 'y', 'vx', 'vy', 'plasticStrain'))
+		v, e, position = np.stack((f['vx'], f['vy']), axis=1), f['plasticStrain'], np.stack((f['x'], f['y']), axis=1)
 		if not (np.isfinite(v).all() and np.isfinite(position).all()):
 			raise ImpactError('not a number in the state of the rod at step %d' % o.iter)
-		m = measure.rodMeasure(s.field('rod', 'mass'), v, e, s.facts['speed'], s.facts['direction'])
+		m = measure.rodMeasure(f['mass'], v, e, s.facts['speed'], s.facts['direction'])
 		row = dict(m.asDict(), time=o.time, step=o.iter, dt=o.dt, clearance=measure.rearClearance(position, e, s.facts['rear'], s.facts['normal']))
-		row['lengthLossGeometric'] = 1 - scenes.rodLength(s) / s.facts['restLength']
+		row['lengthLossGeometric'] = 1 - measure.geometricLength(position, e, 0.5 * s.facts['rodDiameter'], s.facts['direction']) / s.facts['restLength']
 		row['momentum'] = m.allVelocity * self.rodMass
 		a, c = s.automata.energies(), s.automata.counters()
 		row.update({k: a[k] for k in ('plastic', 'viscous', 'friction', 'fracture')})
 		row.update(kinetic=a['kinetic'], stored=a['volumetric'] + a['deviatoric'], grid=0., total=a['total'], booked=a['bookedError'], momentumX=a['momentumX'] - a['impulseX'],
 		           momentumY=a['momentumY'] - a['impulseY'])
-		if s.couplers:
-			b, g = s.couplers[0].energies(), s.grid.energies()
-			row.update(kinetic=b['kinetic'], grid=g['internal'], total=b['total'], booked=b['booked'], momentumX=b['momentumX'] - b['impulseX'], momentumY=b['momentumY'] - b['impulseY'])
+		if s.couplers:  # the sums of McaGridCoupler.energies(), without another look at all automata
+			g = s.grid.energies()
+			row.update(kinetic=a['kinetic'] + g['kinetic'], grid=g['internal'], total=a['total'] + g['total'], booked=a['bookedError'] + g['total'],
+			           momentumX=a['momentumX'] + g['momentumX'] - (a['impulseX'] + g['impulseX']), momentumY=a['momentumY'] + g['momentumY'] - (a['impulseY'] + g['impulseY']))
 		row.update({k: c.get(k, 0) for k in ('deepest', 'clamped', 'brokenLinks', 'contacts', 'awake')})
 		for k in COLUMNS:
 			r[k].append(float(row[k]))

@@ -16,10 +16,10 @@ PRESSURE = dict(label='pressure', unit='Pa', vmin=-6e9, vmax=6e9, cmap='RdBu_r')
 
 def automataFields(s):
 	"""(positions (N, 2) [m], radius (N,) [m], fields) of all automata; names of the fields carry their units."""
-	a, f = s.automata, s.automata.field
-	fields = {'velocity [m/s]': np.stack((f('vx'), f('vy')), axis=1), 'pressure [Pa]': f('pressure'), 'equivalentStress [Pa]': f('equivalentStress'),
-	          'plasticStrain': f('plasticStrain'), 'temperature [K]': f('temperature'), 'links': f('links'), 'rod': np.isin(a.ids, s.ids['rod']).astype(np.uint8)}
-	return np.stack((f('x'), f('y')), axis=1), 0.5 * f('diameter'), fields
+	f = s.automata.fields(['ids', 'x', 'y', 'vx', 'vy', 'diameter', 'pressure', 'equivalentStress', 'plasticStrain', 'temperature', 'links'])
+	fields = {'velocity [m/s]': np.stack((f['vx'], f['vy']), axis=1), 'pressure [Pa]': f['pressure'], 'equivalentStress [Pa]': f['equivalentStress'],
+	          'plasticStrain': f['plasticStrain'], 'temperature [K]': f['temperature'], 'links': f['links'], 'rod': np.isin(f['ids'], s.ids['rod']).astype(np.uint8)}
+	return np.stack((f['x'], f['y']), axis=1), 0.5 * f['diameter'], fields
 
 
 def gridFields(s, block):

@@ -147,6 +147,25 @@ def test_timeStepper(plugin):
 	assert len(ids) and O.engines[0].limitedBy.startswith('McaDensity')
 
 
+def test_aSuddenFallOfTheStableStepShortensTheStepInsteadOfEndingTheRun(plugin):
+	"""As with McaEngine: links break within a step, and the step chosen before is then too long. Every step is at most the share of the limit that was asked for."""
+	from yade import O
+	from yade.wrapper import McaTimeStepper
+	scene.impact()
+	scene.engines('law2', 1e-9)
+	O.engines = [McaTimeStepper(factor=1.)] + O.engines
+	O.step()
+	d, stepper = scene.density(), O.engines[0]
+	shortened, before = 0, O.dt
+	for _ in range(600):
+		chosen = min(d.criticalTimeStep, 1.1 * before)
+		O.step()
+		shortened += 0 < O.dt < chosen * (1 - 1e-12)
+		assert O.dt <= d.dtLimit and stepper.limitedBy == 'McaDensity'
+		before = O.dt
+	assert d.brokenLinks > 10 and shortened > 0
+
+
 def refused(words):
 	from yade import O
 	with pytest.raises(RuntimeError) as e:
