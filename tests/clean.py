@@ -282,6 +282,9 @@ def main():
 	except Broken as e:
 		say('FAILED: %s' % e)
 		failed += 1
+	except (SystemExit, KeyboardInterrupt):
+		say('clean: interrupted; what was mounted is unmounted')
+		raise
 	used = os.times()
 	say('%.0f s, %.0f s of processors' % (time.time() - start, used.children_user + used.children_system))
 	say('clean: %d passed, %d failed%s' % (passed, failed, ', %d skipped' % skipped if skipped else ''))
