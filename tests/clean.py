@@ -53,8 +53,15 @@ def readme(text):
 	return [c for c in commands if not c.startswith(LEFT_OUT)], script[0]
 
 
-def output(*command):
-	return subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+def output(*command, **environment):
+	return subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=dict(os.environ, **environment))
+
+
+def git(*command):
+	"""git, which root may use on a tree that belongs to somebody else; a clone asks again for that, in a process that sees nothing but the settings of the user."""
+	settings = ROOTS / 'git.conf'
+	settings.write_text('[safe]\n\tdirectory = *\n')
+	return output('git', *command, GIT_CONFIG_GLOBAL=str(settings))
 
 
 def aptSettings():
@@ -86,7 +93,7 @@ def mayMakeRoots():
 		output('umount', str(trial))
 	finally:
 		trial.rmdir()
-	if output('git', '-C', str(TREE), 'rev-parse', 'HEAD').returncode: raise Skipped('the tree is no git repository: there is no commit to clone')
+	if git('-C', str(TREE), 'rev-parse', 'HEAD').returncode: raise Skipped('the tree is no git repository: there is no commit to clone')
 
 
 class Root:
@@ -138,7 +145,7 @@ class Root:
 		where = Path(str(self.path) + self.tree)
 		self.shell('root', 'useradd -m -s /bin/bash anna', '/')
 		if self.owner != 'root': (self.path / 'etc/sudoers.d/anna').write_text('anna ALL=(ALL) NOPASSWD: ALL\n')
-		done = output('git', 'clone', '-q', '--no-hardlinks', str(TREE), str(where))
+		done = git('clone', '-q', '--no-hardlinks', str(TREE), str(where))
 		if done.returncode: raise Broken('git clone failed: ' + done.stdout)
 		(where / 'ball.py').write_text(script)
 		self.shell('root', 'chown -R %s: %s && mkdir -p /exchange && chmod 777 /exchange' % (self.owner, self.tree), '/')
@@ -258,7 +265,7 @@ def main():
 	try:
 		mayMakeRoots()
 		commands, script = readme((TREE / 'README.md').read_text())
-		if output('git', '-C', str(TREE), 'status', '--porcelain', '--untracked-files=no').stdout: say('the tree has changes that are not committed and so not in the clones')
+		if git('-C', str(TREE), 'status', '--porcelain', '--untracked-files=no').stdout: say('the tree has changes that are not committed and so not in the clones')
 		roots = [Root(suite, options.owner or SUITES.get(suite, 'root'), options.ccache, start + 60 * options.limit) for suite in suites]
 		with contexts(roots), concurrent.futures.ThreadPoolExecutor(len(roots)) as pool:
 			try:

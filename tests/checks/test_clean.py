@@ -68,3 +68,19 @@ def test_continuousIntegrationAddsBoth(tmp_path, tests, roots, line, status):
 	lines = done.stdout.splitlines()
 	assert lines[-1] == line and done.returncode == status, done.stdout
 	assert sum(bool(re.match(r'\d+ passed, \d+ failed', x)) for x in lines) == 1, done.stdout
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason='only root can give a tree to somebody else')
+def test_clonesATreeThatBelongsToSomebodyElse(tmp_path, monkeypatch):
+	"""As continuous integration finds it: another owner, the last commit alone, no branch."""
+	monkeypatch.setattr(clean, 'ROOTS', tmp_path)
+	run = lambda *a: subprocess.run(a, check=True, capture_output=True, cwd=tmp_path)
+	run('git', 'init', '-q', 'a')
+	run('git', '-C', 'a', '-c', 'user.name=n', '-c', 'user.email=n@n.invalid', 'commit', '-q', '--allow-empty', '-m', 'one')
+	run('git', 'clone', '-q', '--depth', '1', 'file://%s/a' % tmp_path, 'b')
+	run('git', '-C', 'b', 'checkout', '-q', '--detach')
+	run('chown', '-R', '65534', 'b')
+	assert clean.output('git', '-C', str(tmp_path / 'b'), 'rev-parse', 'HEAD').returncode
+	head = clean.git('-C', str(tmp_path / 'b'), 'rev-parse', 'HEAD').stdout
+	done = clean.git('clone', '-q', '--no-hardlinks', str(tmp_path / 'b'), str(tmp_path / 'c'))
+	assert done.returncode == 0 and len(head) == 41 and clean.git('-C', str(tmp_path / 'c'), 'rev-parse', 'HEAD').stdout == head, done.stdout
