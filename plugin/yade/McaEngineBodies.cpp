@@ -238,7 +238,7 @@ vector<McaEngine::Change> McaEngine::changes(bool& rebuild) const
 		const McaState& s   = *m;
 		const Same&     was = same[q];
 		const size_t    i   = size_t(solver->indexOf(order[q]));
-		const bool      tied = S.flags[i] & mca::automata::tiedBit;
+		const bool      tied = S.flags[i] & mca::tiedBit;
 		Change          c;
 		c.place         = q;
 		c.position      = s.se3.position != was.pos;
@@ -266,8 +266,8 @@ vector<McaEngine::Change> McaEngine::changes(bool& rebuild) const
 		};
 		result("pressure", s.pressure, was.pressure), result("volumeRatio", s.volumeRatio, was.volumeRatio);
 		if (!stale) {
-			const int links = __builtin_popcount(S.flags[i] & mca::automata::linkBits), had = __builtin_popcount((S.flags[i] >> mca::automata::hadShift) & mca::automata::linkBits);
-			if (lastWritten >= 0) result("links", s.links, links), result("brokenLinks", s.brokenLinks, had - links), result("equivalentStress", s.equivalentStress, solver->equivalentStress(i));
+			const int links = mca::linkCount(S.flags[i]), broken = mca::brokenCount(S.flags[i]);
+			if (lastWritten >= 0) result("links", s.links, links), result("brokenLinks", s.brokenLinks, broken), result("equivalentStress", s.equivalentStress, solver->equivalentStress(i));
 			result("stressZZ", s.stressZZ, S.szz[i]), result("dissipated", s.dissipated, S.heat.empty() ? 0. : S.heat[i]);
 		}
 		rebuild |= b.material.get() != known[size_t(S.species[size_t(S.speciesOf(i))].material)].get();
@@ -346,8 +346,8 @@ void McaEngine::writeBodies(Scene* scene)
 		if (auto* m = castTo<McaState>(&s)) {
 			m->pressure = S.P[i], m->volumeRatio = S.J[i], m->plasticStrain = S.eqps[i], m->temperature = S.temperature[i], m->stressZZ = S.szz[i];
 			m->equivalentStress = solver->equivalentStress(i);
-			m->links            = __builtin_popcount(S.flags[i] & mca::automata::linkBits);
-			m->brokenLinks      = __builtin_popcount((S.flags[i] >> mca::automata::hadShift) & mca::automata::linkBits) - m->links;
+			m->links            = mca::linkCount(S.flags[i]);
+			m->brokenLinks      = mca::brokenCount(S.flags[i]);
 			if (!S.heat.empty()) m->dissipated = S.heat[i];
 		}
 		remember(size_t(q));

@@ -95,8 +95,6 @@ py::object McaEngine::fieldByName(const string& name)
 			{ "x", &S.x }, { "y", &S.y }, { "vx", &S.vx }, { "vy", &S.vy }, { "omega", &S.omega }, { "angle", &S.angle }, { "mass", &S.mass }, { "pressure", &S.P }, { "volumeRatio", &S.J },
 			{ "plasticStrain", &S.eqps }, { "temperature", &S.temperature }, { "stressZZ", &S.szz }, { "fx", &S.fx }, { "fy", &S.fy }, { "strength", &S.strength }, { "diameter", &S.diameter }, { "weight", &S.weight }
 		};
-		const auto   had  = [&](size_t i) { return __builtin_popcount((S.flags[i] >> mca::automata::hadShift) & mca::automata::linkBits); };
-		const auto   have = [&](size_t i) { return __builtin_popcount(S.flags[i] & mca::automata::linkBits); };
 		vector<Real> v(order.size());
 		auto         fill = [&](auto value) {
                         for (size_t q = 0; q < order.size(); q++)
@@ -105,8 +103,8 @@ py::object McaEngine::fieldByName(const string& name)
 		auto it = plain.find(name);
 		if (it != plain.end()) fill([&](size_t i) { return (*it->second)[i]; });
 		else if (name == "equivalentStress") fill([&](size_t i) { return solver->equivalentStress(i); });
-		else if (name == "links") fill([&](size_t i) { return Real(have(i)); });
-		else if (name == "brokenLinks") fill([&](size_t i) { return Real(had(i) - have(i)); });
+		else if (name == "links") fill([&](size_t i) { return Real(mca::linkCount(S.flags[i])); });
+		else if (name == "brokenLinks") fill([&](size_t i) { return Real(mca::brokenCount(S.flags[i])); });
 		else if (name == "material") fill([&](size_t i) { return Real(S.species[size_t(S.speciesOf(i))].material); });
 		else {
 			string list;
