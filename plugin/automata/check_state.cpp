@@ -83,7 +83,7 @@ namespace {
 	{
 		const size_t n = S.size();
 		need(size({ &S.x,   &S.y,        &S.vx,          &S.vy,       &S.omega,     &S.angle, &S.mass,   &S.inertia, &S.ax,    &S.ay,
-		            &S.ar,  &S.diameter, &S.cell,        &S.invN,     &S.rest,      &S.J,     &S.dTheta, &S.P,       &S.h,     &S.jOff,
+		            &S.ar,  &S.diameter, &S.cell,        &S.invN,     &S.rest,      &S.J,     &S.dTheta, &S.P,       &S.h,     &S.factor,
 		            &S.szz, &S.eqps,     &S.temperature, &S.strength, &S.criterion, &S.fx,    &S.fy,     &S.torque,  &S.weight },
 		          n),
 		     "the length of an array");
@@ -92,7 +92,7 @@ namespace {
 		need(size({ &S.heat }, heats ? n : 0) && (size({ &S.ex, &S.ey, &S.et }, 0) || size({ &S.ex, &S.ey, &S.et }, n))
 		             && (size({ &S.dampX, &S.dampY }, 0) || size({ &S.dampX, &S.dampY }, n)),
 		     "the length of an array");
-		for (auto v : { &S.x, &S.y, &S.vx, &S.vy, &S.omega, &S.angle, &S.rest, &S.jOff, &S.inertia }) need(finite(*v), "a position or velocity");
+		for (auto v : { &S.x, &S.y, &S.vx, &S.vy, &S.omega, &S.angle, &S.rest, &S.factor, &S.inertia }) need(finite(*v), "a position or velocity");
 		for (auto v : { &S.mass, &S.diameter, &S.cell, &S.invN, &S.strength, &S.weight }) need(positive(*v), "a mass or size");
 		for (auto v : { &S.ax, &S.ay, &S.ar, &S.dampX, &S.dampY }) need(notNegative(*v), "a mass or damping");
 		for (size_t i = 0; i < n; i++) need(S.diameter[i] == S.species[size_t(S.speciesOf(i))].d, "a diameter");
@@ -127,7 +127,7 @@ namespace {
 	{
 		const size_t m = C.size();
 		need(m < size_t(1) << 31 && C.other.size() == m && size({ &C.s, &C.tau, &C.rest, &C.twoG }, m), "the length of the contacts");
-		need(waiting || (C.reverse.size() == m && size({ &C.d, &C.friction, &C.viscLinear, &C.viscQuadratic, &C.share }, m)),
+		need(waiting || (C.reverse.size() == m && size({ &C.d, &C.friction, &C.viscLinear, &C.viscQuadratic, &C.arm }, m)),
 		     "the length of the contacts");
 		need(C.rows() == 0 && C.rowBegin.empty() ? m == 0 : offsets(C.rowBegin, C.rows(), m), "the rows of the contacts");
 		need(within(C.owner, S.size()) && within(C.other, S.size()) && within(C.rowOwner, S.size()) && within(C.reverse, m), "a contact");
@@ -145,7 +145,7 @@ namespace {
 			need(C.owner[q] == C.other[c] && C.other[q] == C.owner[c], "a contact that is listed on one side only");
 		}
 		need(notNegative(C.rest) && notNegative(C.twoG) && positive(C.d) && notNegative(C.friction) && notNegative(C.viscLinear)
-		             && notNegative(C.viscQuadratic) && positive(C.share),
+		             && notNegative(C.viscQuadratic) && positive(C.arm),
 		     "a constant of a contact");
 		need(stopped || (finite(C.s) && finite(C.tau)), "the stress of a contact");
 	}

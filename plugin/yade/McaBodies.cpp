@@ -94,7 +94,7 @@ void McaBodies::add(const Body& b, int seed)
 	a.mass          = s.mass;
 	a.inertia       = s.inertia[2];
 	a.diameter      = 2. * static_cast<Sphere*>(b.shape.get())->radius;
-	const Real full = m->density * mca::Lattice<2>::cell(a.diameter);
+	const Real full = m->density * mca::Lattice::cell(a.diameter);
 	a.weight        = a.mass / full;
 	if (std::fabs(a.weight - 1.) < 1e-9) a.weight = 1.;
 	if (a.mass > 0 && (a.weight < 0.05 || a.weight > 2))

@@ -109,7 +109,7 @@ McaEngine::Change McaEngine::changeOf(size_t q, bool& rebuild)
 	const McaState& s    = *m;
 	Same&           was  = same[q];
 	const size_t    i    = size_t(solver->indexOf(order[q]));
-	const bool      tied = S.flags[i] & mca::automata::tiedBit;
+	const bool      tied = S.flags[i] & mca::tiedBit;
 	const auto      free = [&](unsigned dof, Real inverse) { return !(s.blockedDOFs & dof) == (inverse > 0); };
 	Change          c;
 	c.place         = q;
@@ -210,8 +210,8 @@ bool McaEngine::writeBody(State& s, Same& was, size_t i) const
 	if (!m) return kept;
 	m->pressure = was.pressure = S.P[i], m->volumeRatio = was.volumeRatio = S.J[i], m->plasticStrain = was.plasticStrain = S.eqps[i], m->temperature = was.temperature = S.temperature[i];
 	m->stressZZ = was.stressZZ = S.szz[i], m->equivalentStress = was.equivalentStress = solver->equivalentStress(i);
-	m->links       = was.links       = __builtin_popcount(S.flags[i] & mca::automata::linkBits);
-	m->brokenLinks = was.brokenLinks = __builtin_popcount((S.flags[i] >> mca::automata::hadShift) & mca::automata::linkBits) - was.links;
+	m->links       = was.links       = __builtin_popcount(S.flags[i] & mca::linkBits);
+	m->brokenLinks = was.brokenLinks = __builtin_popcount((S.flags[i] >> mca::hadShift) & mca::linkBits) - was.links;
 	if (!S.heat.empty()) m->dissipated = S.heat[i];
 	was.dissipated = m->dissipated;
 	return kept;

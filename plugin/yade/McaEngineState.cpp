@@ -109,8 +109,8 @@ namespace {
 		{ "omega", &Store::omega }, { "plasticStrain", &Store::eqps }, { "pressure", &Store::P }, { "strength", &Store::strength }, { "stressZZ", &Store::szz }, { "temperature", &Store::temperature },
 		{ "volumeRatio", &Store::J }, { "vx", &Store::vx }, { "vy", &Store::vy }, { "weight", &Store::weight }, { "x", &Store::x }, { "y", &Store::y } };
 
-	int had(const Store& S, size_t i) { return __builtin_popcount((S.flags[i] >> mca::automata::hadShift) & mca::automata::linkBits); }
-	int have(const Store& S, size_t i) { return __builtin_popcount(S.flags[i] & mca::automata::linkBits); }
+	int had(const Store& S, size_t i) { return __builtin_popcount((S.flags[i] >> mca::hadShift) & mca::linkBits); }
+	int have(const Store& S, size_t i) { return __builtin_popcount(S.flags[i] & mca::linkBits); }
 
 	/// One quantity of the automata at these places.
 	vector<Real> quantity(const mca::automata::Solver& solver, const vector<size_t>& places, const string& name, const string& call)

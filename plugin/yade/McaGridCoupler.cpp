@@ -80,7 +80,7 @@ vector<RowPoint> McaGridCoupler::candidates(Scene* scene, vector<mca::Material>&
                 const Vector3r& x = at ? (*at)[0] : b.state->se3.position;
                 RowPoint        p;
                 p.id = b.id, p.x = x[0], p.y = x[1], p.diameter = 2. * sphere->radius, p.mass = b.state->mass;
-                p.weight = p.mass / (b.material->density * mca::Lattice<2>::cell(p.diameter));
+                p.weight = p.mass / (b.material->density * mca::Lattice::cell(p.diameter));
                 if (m) {
                         const auto it = known.emplace(m, keep.size());
                         if (it.second) keep.push_back(m->toMaterial());
