@@ -114,7 +114,7 @@ namespace {
 			for (int k = 0; k < nLinks; k++) {
 				if (!((S.flags[i] >> k) & 1)) continue;
 				const size_t j    = size_t(S.neighbour[linkSlot(i, k)]);
-				const int    back = (k + 3) % nLinks;
+				const int    back = Lattice::opposite(k);
 				need(j != i && S.id[j] >= 0 && ((S.flags[j] >> back) & 1) && size_t(S.neighbour[linkSlot(j, back)]) == i,
 				     "a link that holds at one end only");
 				need(b.mixed || S.speciesOf(j) == b.species, "a link between two species");
