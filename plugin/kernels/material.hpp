@@ -40,6 +40,16 @@ struct Material {
 	double cS() const { return std::sqrt(G / eos.rho0); }
 };
 
+/// f(constant) for every constant, in a fixed order: numbers, truth values and YieldKind. What saves or compares materials goes by this list.
+template <class F> void eachConstant(Material& m, F&& f)
+{
+	f(m.eos.rho0), f(m.eos.c0), f(m.eos.b), f(m.eos.gamma0), f(m.eos.mieGrueneisen), f(m.eos.clampAt), f(m.G);
+	f(m.yield.kind), f(m.yield.A), f(m.yield.B), f(m.yield.n), f(m.yield.C), f(m.yield.rate0), f(m.yield.m), f(m.yield.Tm), f(m.yield.T0), f(m.yield.heatPerWork);
+	f(m.fracture.strain), f(m.fracture.spall), f(m.fracture.pairStress), f(m.fracture.mises), f(m.fracture.ratio);
+	f(m.viscosity.linear), f(m.viscosity.quadratic), f(m.friction);
+}
+constexpr int yieldKinds = 4;
+
 /// Throws mca::Error naming the first constant that is out of range. name: how the user calls the material.
 inline void validate(const Material& m, const std::string& name)
 {
