@@ -2,8 +2,9 @@
 """`tests/run clean`: the commands of README.md, in their order, on machines with nothing of ours on them; called by tests/run.
 
 For each supported release of Debian a minimal root is made by mmdebstrap, the commit at hand is cloned into it, and its owner, root or an ordinary user with sudo, types what
-README.md says. Then a second user does the same with the first one's build: an ordinary user without sudo, or root. At the end files saved in one release are loaded in the other.
+README.md says. Then a second user works with the first one's build: an ordinary user without sudo, or root. At the end files saved in one release are loaded in the other.
 The bare roots are kept in build/roots (YADE_MCA_ROOTS names another folder). Needs root; where no root can be made or entered, it says so and nothing fails.
+Last line: `clean: N passed, N failed`, and how many releases were skipped. Beside the time of each command stands that of the processors, which does not depend on who else works here.
 """
 import argparse
 import concurrent.futures
@@ -23,7 +24,9 @@ SUITES = {'bookworm': 'root', 'trixie': 'anna'}  #: release -> who owns the tree
 WARNING = ('forky', )  #: tried as well when named; what fails there is shown and not counted
 INCLUDE = 'ca-certificates,git,sudo'  #: what one must have to fetch a source tree and to install packages
 FAILS = {'pyscripts/run': 2}  #: status of commands for which it is not 0: without a task the list comes as a refusal
-LEFT_OUT = ('tests/run', )  #: hours of processors for what continuous integration does anyway
+LEFT_OUT = ('tests/run', )  #: many minutes for what continuous integration does anyway
+ONCE = ('cmake', 'sudo', 'pyscripts/run docs', 'pyscripts/run check')  #: what the second user leaves out: it writes into the tree, or (`check`) takes minutes and the owner of the other release's tree does it
+FETCH = 'E: (Failed to fetch|Unable to fetch|Some index files failed)'  #: what apt says when a mirror does not answer
 printing = threading.Lock()
 
 
@@ -50,8 +53,15 @@ def readme(text):
 	return [c for c in commands if not c.startswith(LEFT_OUT)], script[0]
 
 
-def output(*command):
-	return subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+def output(*command, **environment):
+	return subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=dict(os.environ, **environment))
+
+
+def git(*command):
+	"""git, which root may use on a tree that belongs to somebody else; a clone asks again for that, in a process that sees nothing but the settings of the user."""
+	settings = ROOTS / 'git.conf'
+	settings.write_text('[safe]\n\tdirectory = *\n')
+	return output('git', *command, GIT_CONFIG_GLOBAL=str(settings))
 
 
 def aptSettings():
@@ -83,14 +93,14 @@ def mayMakeRoots():
 		output('umount', str(trial))
 	finally:
 		trial.rmdir()
-	if output('git', '-C', str(TREE), 'rev-parse', 'HEAD').returncode: raise Skipped('the tree is no git repository: there is no commit to clone')
+	if git('-C', str(TREE), 'rev-parse', 'HEAD').returncode: raise Skipped('the tree is no git repository: there is no commit to clone')
 
 
 class Root:
 	"""A root of one release in which `owner` has the tree. Use as a context manager: what it mounts it unmounts."""
 
-	def __init__(self, suite, owner, ccache=None):
-		self.suite, self.owner, self.ccache = suite, owner, ccache
+	def __init__(self, suite, owner, ccache=None, end=float('inf')):
+		self.suite, self.owner, self.ccache, self.end = suite, owner, ccache, end
 		self.name = '%s %s' % (suite, owner)
 		self.path = ROOTS / ('%s-%s' % (suite, owner))
 		self.home = {'root': '/root', 'anna': '/home/anna'}
@@ -110,6 +120,7 @@ class Root:
 			settings = ROOTS / 'apt.conf'
 			settings.write_text(aptSettings())
 			done = output('mmdebstrap', '--mode=root', '--variant=minbase', '--aptopt=%s' % settings, '--include=' + INCLUDE, self.suite, str(part), 'deb %s %s main' % (uri, self.suite))
+			if done.returncode and re.search(FETCH, done.stdout): raise Skipped('the mirror of packages stopped answering')
 			if done.returncode: raise Broken('mmdebstrap failed:\n' + done.stdout[-3000:])
 			part.rename(kept)
 		self.path.mkdir(parents=True)
@@ -128,45 +139,49 @@ class Root:
 			done = output(*command[:-1], str(self.path) + command[-1])
 			if done.returncode: raise Skipped('%s: %s' % (' '.join(command), done.stdout.strip()))
 		if self.ccache: self.shell('root', 'apt-get update && apt-get install -y --no-install-recommends ccache && chmod -R a+rwX /ccache', '/')
-		say('%-14s %7.1f s  a bare root%s' % (self.name, time.time() - start, ' with ccache' if self.ccache else ''))
+		say('%-14s %7.1f s            a bare root%s' % (self.name, time.time() - start, ' with ccache' if self.ccache else ''))
 
 	def clone(self, script):
 		where = Path(str(self.path) + self.tree)
 		self.shell('root', 'useradd -m -s /bin/bash anna', '/')
 		if self.owner != 'root': (self.path / 'etc/sudoers.d/anna').write_text('anna ALL=(ALL) NOPASSWD: ALL\n')
-		done = output('git', 'clone', '-q', '--no-hardlinks', str(TREE), str(where))
+		done = git('clone', '-q', '--no-hardlinks', str(TREE), str(where))
 		if done.returncode: raise Broken('git clone failed: ' + done.stdout)
 		(where / 'ball.py').write_text(script)
 		self.shell('root', 'chown -R %s: %s && mkdir -p /exchange && chmod 777 /exchange' % (self.owner, self.tree), '/')
 
-	def shell(self, user, command, folder, limit=3600):
-		"""(status, output) of a command typed by `user` in `folder`."""
+	def shell(self, user, command, folder):
+		"""(status, output, seconds of processors) of a command typed by `user` in `folder`."""
 		environment = ['HOME=' + self.home[user], 'USER=' + user, 'LANG=C.UTF-8', 'TERM=dumb', 'PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin']
 		if self.ccache:
 			environment += ['CMAKE_CXX_COMPILER_LAUNCHER=ccache', 'CCACHE_DIR=/ccache', 'CCACHE_UMASK=000', 'CCACHE_NOHASHDIR=1', 'CCACHE_BASEDIR=' + os.path.dirname(self.tree),
 			                'CCACHE_SLOPPINESS=pch_defines,time_macros']
 		if self.ending: raise Broken('interrupted')
+		left = self.end - time.time()
+		if left < 0: raise Broken('the time is over, what is left was not tried')
 		number = '0:0' if user == 'root' else '1000:1000'
-		full = ['chroot', '--userspec=' + number, '--groups=' + number.split(':')[0], str(self.path), '/usr/bin/env', '-i', *environment, 'bash', '-c', 'cd %s && %s' % (folder, command)]
+		timed = 'cd %s || exit; TIMEFORMAT="PROCESSORS %%U %%S"; time { %s\n}' % (folder, command)
+		full = ['chroot', '--userspec=' + number, '--groups=' + number.split(':')[0], str(self.path), '/usr/bin/env', '-i', *environment, 'bash', '-c', timed]
 		self.running = subprocess.Popen(full, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors='replace', start_new_session=True)
 		try:
-			text, _ = self.running.communicate(timeout=limit)
+			text, _ = self.running.communicate(timeout=min(left, 1e6))
 		except subprocess.TimeoutExpired:
 			self.stop()
-			text = self.running.communicate()[0] + '\nstopped after %g s' % limit
-		return self.running.returncode, text
+			text = self.running.communicate()[0] + '\nstopped: the time is over'
+		text, *used = re.split(r'PROCESSORS ([\d.]+) ([\d.]+)\n$', text)
+		return self.running.returncode, text, sum(float(x) for x in used if x)
 
 	def stop(self, forever=False):
 		"""Ends what is running in the root, and what would come after it."""
 		self.ending = forever
 		if self.running and self.running.poll() is None: os.killpg(self.running.pid, signal.SIGKILL)
 
-	def count(self, who, command, seconds, good, text):
+	def count(self, who, command, start, used, good, text):
 		if good: self.passed += 1
 		else: self.failed += 1
 		with open(self.log, 'a') as file:
 			file.write('==== %s: %s\n%s\n' % (who, command, text))
-		say('%-14s %7.1f s  %s  %s: %s' % (self.name, seconds, 'ok    ' if good else 'FAILED', who, command))
+		say('%-14s %7.1f s %7.1f s  %s  %s: %s' % (self.name, time.time() - start, used, 'ok    ' if good else 'FAILED', who, command))
 		if not good: say('\n'.join('    ' + line for line in text.splitlines()[-60:]))
 
 	def type(self, user, commands):
@@ -175,10 +190,10 @@ class Root:
 		for command in commands:
 			typed = command if own else re.sub(r'\b(?=pyscripts/|pyscripts\b|ball\.py)', self.tree + '/', command)
 			start = time.time()
-			status, text = self.shell(user, typed, self.tree if own else self.home[user])
-			if status and re.search('E: (Failed to fetch|Unable to fetch|Some index files failed)', text): raise Skipped('the mirror of packages stopped answering at `%s`' % typed)
+			status, text, used = self.shell(user, typed, self.tree if own else self.home[user])
+			if status and re.search(FETCH, text): raise Skipped('the mirror of packages stopped answering at `%s`' % typed)
 			good = status == FAILS.get(command, 0) and 'Traceback' not in text
-			self.count(user, typed, time.time() - start, good, text)
+			self.count(user, typed, start, used, good, text)
 			if not good and command == commands[0]:
 				say('%-14s the first command sets up and builds: the others are not tried' % self.name)
 				return
@@ -209,27 +224,29 @@ def visit(root, commands, script):
 	root.clone(script)
 	root.type(root.owner, commands)
 	other = 'anna' if root.owner == 'root' else 'root'
-	root.type(other, [c for c in commands if not c.startswith(('cmake', 'sudo', 'pyscripts/run docs'))])
+	root.type(other, [c for c in commands if not c.startswith(ONCE)])
 
 
-def exchange(roots):
-	"""Files saved in each release are loaded in each other one."""
-	for source in roots:
-		status, text = source.shell(source.owner, 'pyscripts/yade-mca -n -x tests/clean_exchange.py save %s /exchange' % source.suite, source.tree)
-		source.count(source.owner, 'files are saved', 0, status == 0, text)
-		for target in roots:
-			if target is source: continue
-			for file in sorted((source.path / 'exchange').glob(source.suite + '-*')):
-				shutil.copy(file, target.path / 'exchange')
-				os.chmod(target.path / 'exchange' / file.name, 0o644)
-			for file in sorted((target.path / 'exchange').glob(source.suite + '-*[lz]')):  # not the numbers, .json
-				start = time.time()
-				status, text = target.shell(target.owner, 'pyscripts/yade-mca -n -x tests/clean_exchange.py load %s /exchange/%s' % (target.suite, file.name), target.tree)
-				said = re.findall(r'^EXCHANGE (.*)$', text, re.M)
-				# YADE reads the bytes of NewtonIntegrator's new members from what follows: an error, or by chance the end of the process
-				chance = '-law2.' in file.name and file.name.endswith('.gz')
-				answer = said[0] if said else 'ends YADE, which is known' if chance else 'no answer'
-				target.count(target.owner, 'loads %s: %s' % (file.name, answer), time.time() - start, chance or (status == 0 and len(said) == 1), text)
+def save(root):
+	start = time.time()
+	status, text, used = root.shell(root.owner, 'pyscripts/yade-mca -n -x tests/clean_exchange.py save %s /exchange' % root.suite, root.tree)
+	root.count(root.owner, 'files are saved', start, used, status == 0, text)
+
+
+def load(root, sources):
+	"""Files saved in other releases are loaded in this one."""
+	for source in sources:
+		for file in sorted((source.path / 'exchange').glob(source.suite + '-*')):
+			shutil.copy(file, root.path / 'exchange')
+			os.chmod(root.path / 'exchange' / file.name, 0o644)
+		for file in sorted((root.path / 'exchange').glob(source.suite + '-*[lz]')):  # not the numbers, .json
+			start = time.time()
+			status, text, used = root.shell(root.owner, 'pyscripts/yade-mca -n -x tests/clean_exchange.py load %s /exchange/%s' % (root.suite, file.name), root.tree)
+			said = re.findall(r'^EXCHANGE (.*)$', text, re.M)
+			# YADE reads the bytes of NewtonIntegrator's new members from what follows: an error, or by chance the end of the process
+			chance = '-law2.' in file.name and file.name.endswith('.gz')
+			answer = said[0] if said else 'ends YADE, which is known' if chance else 'no answer'
+			root.count(root.owner, 'loads %s: %s' % (file.name, answer), start, used, chance or (status == 0 and len(said) == 1), text)
 
 
 def main():
@@ -238,37 +255,46 @@ def main():
 	parser.add_argument('suite', nargs='*', help='releases; default: %s; %s as a warning' % (', '.join(SUITES), ', '.join(WARNING)))
 	parser.add_argument('--owner', choices=['root', 'anna'], help='who owns the tree and builds: root, or a user with sudo (default: %s)' % ', '.join('%s in %s' % (o, s) for s, o in SUITES.items()))
 	parser.add_argument('--ccache', metavar='FOLDER', help='keep what is compiled in this folder: shorter, but ccache is on the machine then')
+	parser.add_argument('--limit', metavar='MINUTES', type=float, default=180, help='longest time of all (default: %(default)g); what is not done then has failed')
 	options = parser.parse_args()
 	for suite in options.suite:
 		if suite not in SUITES and suite not in WARNING: parser.error("no release '%s'; there are %s" % (suite, ', '.join([*SUITES, *WARNING])))
-	passed = failed = 0
+	suites = options.suite or list(SUITES)
+	passed = failed = skipped = 0
 	start = time.time()
 	try:
 		mayMakeRoots()
 		commands, script = readme((TREE / 'README.md').read_text())
-		if output('git', '-C', str(TREE), 'status', '--porcelain', '--untracked-files=no').stdout: say('the tree has changes that are not committed and so not in the clones')
-		roots = [Root(suite, options.owner or SUITES.get(suite, 'root'), options.ccache) for suite in options.suite or SUITES]
+		if git('-C', str(TREE), 'status', '--porcelain', '--untracked-files=no').stdout: say('the tree has changes that are not committed and so not in the clones')
+		roots = [Root(suite, options.owner or SUITES.get(suite, 'root'), options.ccache, start + 60 * options.limit) for suite in suites]
 		with contexts(roots), concurrent.futures.ThreadPoolExecutor(len(roots)) as pool:
 			try:
 				problems = list(pool.map(attempt, [(visit, root, commands, script) for root in roots]))
+				ready = [root for root, problem in zip(roots, problems) if problem is None and not root.failed]
+				if len(ready) > 1:
+					list(pool.map(save, ready))
+					list(pool.map(load, ready, [[r for r in ready if r is not root] for root in ready]))
 			except BaseException:  # interrupted: the threads would go on to the end
 				for root in roots:
 					root.stop(forever=True)
 				raise
-			ready = [root for root, problem in zip(roots, problems) if problem is None]
-			if len(ready) > 1 and not any(root.failed for root in ready): exchange(ready)
 			for root in roots:
 				if root.suite in WARNING: say('%s is a warning only: %d passed, %d failed are not counted' % (root.suite, root.passed, root.failed))
 				else: passed, failed = passed + root.passed, failed + root.failed
 			failed += sum(p == 'broken' and r.suite not in WARNING for r, p in zip(roots, problems))
+			skipped = problems.count('skipped')
 	except Skipped as e:
 		say('skipped: %s' % e)
+		skipped = len(suites)
 	except Broken as e:
 		say('FAILED: %s' % e)
 		failed += 1
+	except (SystemExit, KeyboardInterrupt):
+		say('clean: interrupted; what was mounted is unmounted')
+		raise
 	used = os.times()
 	say('%.0f s, %.0f s of processors' % (time.time() - start, used.children_user + used.children_system))
-	say('clean: %d passed, %d failed' % (passed, failed))
+	say('clean: %d passed, %d failed%s' % (passed, failed, ', %d skipped' % skipped if skipped else ''))
 	return 1 if failed else 0
 
 

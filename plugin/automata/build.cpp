@@ -75,7 +75,7 @@ void Solver::makeBlocks(const std::vector<Automaton>& in)
 	for (size_t i = 0; i < n; i++) {
 		const Species& sp = S.species[S.blocks[i / blockSize].species];
 		S.diameter[i]     = sp.d;
-		S.J[i] = 1., S.mass[i] = 1., S.inertia[i] = 1., S.invN[i] = 1. / nLinks, S.cell[i] = Lattice<2>::cell(sp.d), S.id[i] = -1, S.strength[i] = 1., S.weight[i] = 1.;
+		S.J[i] = 1., S.mass[i] = 1., S.inertia[i] = 1., S.invN[i] = 1. / nLinks, S.cell[i] = Lattice::cell(sp.d), S.id[i] = -1, S.strength[i] = 1., S.weight[i] = 1.;
 		S.temperature[i] = S.materials[sp.material].yield.referenceTemperature;
 		if (source[i] < 0) { // padding sits on its block's first automaton, without links
 			const size_t first = i - i % blockSize;
@@ -171,7 +171,6 @@ void Solver::makeLinks(const Solver* old)
 void Solver::placeLinks(const std::vector<Near>& near, const Solver* old)
 {
 	Store&               S     = store;
-	const double         sixth = M_PI / 3.;
 	std::vector<double>  frame(S.size(), 1e9);
 	std::vector<int32_t> queue;
 	// automata that were there before know their frame from the links they have
@@ -180,7 +179,7 @@ void Solver::placeLinks(const std::vector<Near>& near, const Solver* old)
 		for (int k = 0; k < nLinks; k++)
 			if ((S.flags[i] >> k) & 1) {
 				const int32_t j = S.neighbour[linkSlot(i, k)];
-				const double  turn = std::atan2(S.y[j] - S.y[i], S.x[j] - S.x[i]) - k * sixth;
+				const double  turn = std::atan2(S.y[j] - S.y[i], S.x[j] - S.x[i]) - k * Lattice::turn;
 				c += std::cos(turn), s += std::sin(turn);
 			}
 		if (c != 0 || s != 0) frame[i] = std::atan2(s, c);
@@ -192,14 +191,14 @@ void Solver::placeLinks(const std::vector<Near>& near, const Solver* old)
 			if (S.id[i] >= 0 && near[i].count > 0 && (frame[i] < 1e8) == (pass == 0)) seeds.push_back(int32_t(i));
 	for (size_t seed : seeds) {
 		if (done[seed]) continue;
-		if (frame[seed] > 1e8) frame[seed] = std::remainder(near[seed].angle[0], sixth);
+		if (frame[seed] > 1e8) frame[seed] = std::remainder(near[seed].angle[0], Lattice::turn);
 		done[seed] = 1;
 		queue.assign(1, int32_t(seed));
 		for (size_t q = 0; q < queue.size(); q++) {
 			const size_t i   = queue[q];
 			double       off = 0;
 			for (int f = 0; f < near[i].count; f++) {
-				const double turn = (near[i].angle[f] - frame[i]) / sixth, slot = std::round(turn);
+				const double turn = (near[i].angle[f] - frame[i]) / Lattice::turn, slot = std::round(turn);
 				const int    k = ((int(slot) % nLinks) + nLinks) % nLinks;
 				off += turn - slot;
 				if (std::fabs(turn - slot) > 0.42 || ((S.flags[i] >> k) & 1)) {
@@ -211,7 +210,7 @@ void Solver::placeLinks(const std::vector<Near>& near, const Solver* old)
 				S.neighbour[linkSlot(i, k)] = near[i].other[f];
 				S.flags[i] |= (1 << k) | (1 << (hadShift + k));
 			}
-			frame[i] += sixth * off / near[i].count;
+			frame[i] += Lattice::turn * off / near[i].count;
 			for (int f = 0; f < near[i].count; f++) {
 				const int32_t j = near[i].other[f];
 				if (done[j]) continue;
@@ -222,8 +221,19 @@ void Solver::placeLinks(const std::vector<Near>& near, const Solver* old)
 	}
 	for (size_t i = 0; i < S.size(); i++)
 		for (int k = 0; k < nLinks; k++)
-			if (((S.flags[i] >> k) & 1) && S.neighbour[linkSlot(S.neighbour[linkSlot(i, k)], (k + 3) % nLinks)] != int32_t(i))
+			if (((S.flags[i] >> k) & 1) && S.neighbour[linkSlot(S.neighbour[linkSlot(i, k)], Lattice::opposite(k))] != int32_t(i))
 				throw Error("automata " + std::to_string(S.id[i]) + " and " + std::to_string(S.id[S.neighbour[linkSlot(i, k)]]) + " see each other in directions that do not belong to one hexagonal packing; build the body as one packing.");
+}
+
+std::vector<std::pair<int32_t, int32_t>> Solver::links() const
+{
+	const Store&                             S = store;
+	std::vector<std::pair<int32_t, int32_t>> out;
+	for (size_t i = 0; i < S.size(); i++)
+		for (int k = 0; k < nLinks; k++)
+			if (holds(S.flags[i], k) && S.id[i] < S.id[S.neighbour[linkSlot(i, k)]]) out.push_back({ S.id[i], S.id[S.neighbour[linkSlot(i, k)]] });
+	std::sort(out.begin(), out.end());
+	return out;
 }
 
 void Solver::makeAdjacency()
@@ -286,7 +296,7 @@ void Solver::build(const std::vector<Automaton>& automata, const std::vector<Mat
 	works.assign(S.blocks.size(), {});
 	S.packAll();
 	for (size_t b = 0; b < S.blocks.size(); b++)
-		densityPass(S, b, options.volumeRule, {}, true, results[b]);
+		volumePass(S, b, options.volumeRule, {}, true, results[b]);
 	if (old) return inheritState(*old);
 	// automata that enter with a plastic history keep it; nothing else is stressed
 	for (auto& B : S.blocks)

@@ -10,11 +10,11 @@ namespace {
 	struct View {
 		const int32_t *owner, *other, *reverse;
 		double *       s, *tau, *rest, *a, *b, *c, *dx, *dy, *r2, *pushing, *touch, *along, *press;
-		const double * d, *twoG, *perTwoG, *perOwnG, *friction, *viscLinear, *viscQuadratic, *share;
+		const double * d, *twoG, *perTwoG, *perOwnG, *friction, *viscLinear, *viscQuadratic, *arm;
 		explicit View(Contacts& C)
 		        : owner(C.owner.data()), other(C.other.data()), reverse(C.reverse.data()), s(C.s.data()), tau(C.tau.data()), rest(C.rest.data()), a(C.a.data()), b(C.b.data()), c(C.c.data())
 		        , dx(C.dx.data()), dy(C.dy.data()), r2(C.r2.data()), pushing(C.pushing.data()), touch(C.touch.data()), along(C.along.data()), press(C.press.data()), d(C.d.data())
-		        , twoG(C.twoG.data()), perTwoG(C.perTwoG.data()), perOwnG(C.perOwnG.data()), friction(C.friction.data()), viscLinear(C.viscLinear.data()), viscQuadratic(C.viscQuadratic.data()), share(C.share.data())
+		        , twoG(C.twoG.data()), perTwoG(C.perTwoG.data()), perOwnG(C.perOwnG.data()), friction(C.friction.data()), viscLinear(C.viscLinear.data()), viscQuadratic(C.viscQuadratic.data()), arm(C.arm.data())
 		{
 		}
 	};
@@ -32,29 +32,27 @@ namespace {
 				to[k][C.rowOwner[r]] = sum[k];
 		}
 	}
-	/// volume rule of contacts: affine links leave it to (5)
+	/// f(rule of contacts as a compile-time constant)
 	template <class F> void withRule(VolumeRule rule, F&& f)
 	{
-		if (rule == VolumeRule::meanDistance) f(std::integral_constant<VolumeRule, VolumeRule::meanDistance> {});
-		else f(std::integral_constant<VolumeRule, VolumeRule::inversePower> {});
+		dispatch(rule, [&](auto r) { f(std::integral_constant<VolumeRule, ofContacts(r.value)> {}); });
 	}
 
-	template <VolumeRule rule> void density(const Store& S, Contacts& C)
+	template <VolumeRule rule> void volumeTerms(const Store& S, Contacts& C)
 	{
 		const long    n = long(C.size());
 		const View    V(C);
 		const double *x = S.x.data(), *y = S.y.data();
 #pragma omp parallel for simd schedule(static) if (n >= parallelFrom)
 		for (long c = 0; c < n; c++) {
-			const int32_t i = V.owner[c], j = V.other[c];
-			const double  dx = x[j] - x[i], dy = y[j] - y[i], rest = V.rest[c], d = V.d[c], r2 = fma(dx, dx, dy * dy);
-			const double  on = pushes(r2, rest, d);
-			V.dx[c] = dx, V.dy[c] = dy, V.r2[c] = r2;
+			const int32_t     i = V.owner[c], j = V.other[c];
+			const Vec<double> r    = { x[j] - x[i], y[j] - y[i] };
+			const double      rest = V.rest[c], d = V.d[c], r2 = dot(r, r), on = pushes(r2, rest, d);
+			V.dx[c] = r.x, V.dy[c] = r.y, V.r2[c] = r2;
 			V.pushing[c] = on;
-			V.a[c]       = on > 0. ? volumeTerm<rule, 2>(rest, r2) : 0.;
-			// a pair that had come into contact already closer than d gets its rest distance back as it parts; no energy is in it then
-			V.rest[c] = r2 < rest * rest ? rest : min(std::sqrt(r2), d);
-			V.b[c]    = on > 0. ? r2 / (rest * rest) : 1.;
+			V.a[c]       = on > 0. ? volumeTerm<rule>(rest, r2) : 0.;
+			V.rest[c]    = restAfter(rest, r2, d);
+			V.b[c]       = on > 0. ? r2 / (rest * rest) : 1.;
 		}
 	}
 
@@ -66,22 +64,18 @@ namespace {
 		double        speed2 = 0;
 #pragma omp parallel for simd schedule(static) reduction(max : speed2) if (n >= parallelFrom)
 		for (long c = 0; c < n; c++) {
-			const int32_t i = V.owner[c], j = V.other[c];
-			const double  dx = V.dx[c], dy = V.dy[c], vx = velX[j] - velX[i], vy = velY[j] - velY[i];
-			const double  q = V.share[c], spin = fma(omega[i], q, omega[j] * (1. - q)) * dt;
-			const double  touch = max(V.pushing[c], V.pushing[V.reverse[c]]);
-			V.touch[c] = touch, V.along[c] = fma(dx, vx, dy * vy);
-			const auto   e  = strainIncrement(dx, dy, vx * dt, vy * dt, spin);
-			const double ti = dTheta[i], perOldJ = (2. + ti) / ((2. - ti) * J[i]);
-			const double so = V.s[c] * perOldJ, to = V.tau[c] * perOldJ; // before the step [Pa], for the account
-			const double st = fma(V.twoG[c], e.normal - (ti + dTheta[j]) * (1. / 6.), so), tt = fma(V.twoG[c], e.shear, to);
-			const double sn = touch > 0. ? st : 0., tn = touch > 0. ? tt : 0.;
-			V.b[c] = so, V.c[c] = to;
-			V.s[c]   = sn;
-			V.tau[c] = tn;
-			V.a[c]   = fma(sn, sn, tn * tn);
-			if (account) V.press[c] = fma(so, sn, to * tn); // place for the sums; the pressure comes later
-			speed2 = max(speed2, fma(vx, vx, vy * vy));
+			const int32_t     i = V.owner[c], j = V.other[c];
+			const Vec<double> r = { V.dx[c], V.dy[c] }, v = { velX[j] - velX[i], velY[j] - velY[i] };
+			const double      q = V.arm[c], spin = fma(omega[i], q, omega[j] * (1. - q)) * dt, touch = max(V.pushing[c], V.pushing[V.reverse[c]]);
+			const double      perOldJ = perOldRatio(dTheta[i], J[i]);
+			const Pair<double> old { V.s[c] * perOldJ, V.tau[c] * perOldJ }, all = trialStress(old, strainIncrement(r, v * dt, spin), pairDilation(dTheta[i], dTheta[j]), V.twoG[c]);
+			const Pair<double> now { touch > 0. ? all.normal : 0., touch > 0. ? all.shear : 0. };
+			V.touch[c] = touch, V.along[c] = dot(r, v);
+			V.b[c] = old.normal, V.c[c] = old.shear; // for the account
+			V.s[c] = now.normal, V.tau[c] = now.shear;
+			V.a[c] = square(now);
+			if (account) V.press[c] = product(old, now); // place for the sums; the pressure comes later
+			speed2 = max(speed2, dot(v, v));
 		}
 		return speed2;
 	}
@@ -93,27 +87,13 @@ namespace {
 		const double *J = S.J.data(), *dTheta = S.dTheta.data();
 #pragma omp parallel for simd schedule(static) if (n >= parallelFrom)
 		for (long c = 0; c < n; c++) {
-			const int32_t i = V.owner[c];
-			const double  d = V.d[c], Ji = J[i];
-			// normal pair force S s/r - push <= 0: each side keeps within it, so their mean does
-			const double sMax = V.press[c] * V.r2[c] / (Lattice<2>::width(d) * d);
-			const double st = V.s[c] * Ji, tt = V.tau[c] * Ji, s0 = V.s[c] * scale[i], t0 = V.tau[c] * scale[i];
-			const double s = min(s0, sMax), tMax = V.friction[c] * (sMax - s), t = min(max(t0, -tMax), tMax);
-			V.s[c]   = s;
-			V.tau[c] = t;
+			const int32_t      i = V.owner[c];
+			const ContactSide  side { { V.b[c], V.c[c] }, { V.s[c], V.tau[c] }, V.press[c], V.r2[c], V.d[c], V.friction[c], J[i], scale[i], V.touch[c] > 0. };
+			const Pair<double> after = afterFriction(side);
+			V.s[c] = after.normal, V.tau[c] = after.shear;
 			if (account) {
-				// this side's half, area S0 d/2; stress/(2G) = elastic strain. Taken out at the mean of the stresses before and after the step, as the forces
-				// do their work; a pair that parts loses what it still held.
-				const double area = 0.5 * Lattice<2>::width(d) * d, perJ = area / Ji, perG = 0.5 * perJ * V.perTwoG[c], perOwn = 0.25 * perJ * V.perOwnG[c];
-				const double so = V.b[c] * Ji, to = V.c[c] * Ji, held = perG * fma(so, so, to * to), ti = dTheta[i];
-				const bool   on = V.touch[c] > 0.;
-				// the radial return took (so + s)(st - s0) with the stiffness of the pair; booked as plastic with the links: (so + s0)(st - s0) with the owner's own
-				const double plastic = (perG * (so + s) - perOwn * (so + s0)) * (st - s0) + (perG * (to + t) - perOwn * (to + t0)) * (tt - t0);
-				// as for links: pair work that goes into volume change
-				const double coupling = area * 0.5 * (so + s) * (ti + dTheta[V.other[c]]) * (1. / 6.) - ti * held, rubbed = perG * ((so + s) * (s0 - s) + (to + t) * (t0 - t));
-				V.a[c] = on ? rubbed : held;
-				V.b[c] = on ? coupling : 0.;
-				V.c[c] = on ? plastic : 0.;
+				const ContactWork w = contactWork(side, after, V.perTwoG[c], V.perOwnG[c], dTheta[i], dTheta[V.other[c]]);
+				V.a[c] = w.friction, V.b[c] = w.coupling, V.c[c] = w.plastic;
 			}
 		}
 	}
@@ -125,7 +105,7 @@ namespace {
 #pragma omp parallel for simd schedule(static) if (n >= parallelFrom)
 		for (long c = 0; c < n; c++) {
 			const int32_t r   = V.reverse[c];
-			const double  inv = 1. / V.r2[c], mine = h[V.owner[c]] * pressureShape<rule, 2>(V.rest[c], inv), theirs = h[V.other[c]] * pressureShape<rule, 2>(V.rest[r], inv);
+			const double  inv = 1. / V.r2[c], mine = h[V.owner[c]] * pressureShape<rule>(V.rest[c], inv), theirs = h[V.other[c]] * pressureShape<rule>(V.rest[r], inv);
 			V.press[c] = (V.pushing[c] > 0. ? mine : 0.) + (V.pushing[r] > 0. ? theirs : 0.);
 		}
 	}
@@ -136,15 +116,15 @@ namespace {
 		const View V(C);
 #pragma omp parallel for simd schedule(static) if (n >= parallelFrom)
 		for (long c = 0; c < n; c++) {
-			const int32_t r  = V.reverse[c];
-			const double  dx = V.dx[c], dy = V.dy[c], d = V.d[c], inv = 1. / V.r2[c], on = V.touch[c];
-			const double  area = 0.5 * Lattice<2>::width(d) * d, Sn = area * (V.s[c] + V.s[r]), St = area * (V.tau[c] + V.tau[r]);
-			const double  q  = on * viscousCoefficient(V.along[c], inv, V.viscLinear[c], V.viscQuadratic[c], Lattice<2>::width(d));
-			const double  pr = on * V.press[c], al = fma(on * Sn, inv, q - pr), ac = on * St * inv;
-			V.a[c] = fma(al, dx, -ac * dy);
-			V.b[c] = fma(al, dy, ac * dx);
-			t[c]   = on * V.share[c] * St;
-			if (account) t[n + c] = -pr * dx, t[2 * n + c] = -pr * dy, t[3 * n + c] = q * dx, t[4 * n + c] = q * dy;
+			const int32_t      r   = V.reverse[c];
+			const Vec<double>  x   = { V.dx[c], V.dy[c] };
+			const double       d = V.d[c], inv = 1. / V.r2[c], on = V.touch[c], area = pairArea(1., d);
+			const Pair<double> both { area * (V.s[c] + V.s[r]), area * (V.tau[c] + V.tau[r]) };
+			const double       q  = on * viscousCoefficient(V.along[c], inv, V.viscLinear[c], V.viscQuadratic[c], Lattice::width(d)), pr = on * V.press[c];
+			const Vec<double>  f  = contactForce(x, fma(on * both.normal, inv, q - pr), on * both.shear * inv);
+			V.a[c] = f.x, V.b[c] = f.y;
+			t[c]   = on * V.arm[c] * both.shear;
+			if (account) t[n + c] = -pr * x.x, t[2 * n + c] = -pr * x.y, t[3 * n + c] = q * x.x, t[4 * n + c] = q * x.y;
 		}
 	}
 }
@@ -158,9 +138,9 @@ void contactReciprocals(const Store& S, Contacts& C)
 	}
 }
 
-double contactDensity(const Store& S, Contacts& C, VolumeRule rule, ContactScratch& out, size_t& closest)
+double contactVolumes(const Store& S, Contacts& C, VolumeRule rule, ContactScratch& out, size_t& closest)
 {
-	withRule(rule, [&](auto r) { density<r.value>(S, C); });
+	withRule(rule, [&](auto r) { volumeTerms<r.value>(S, C); });
 	addRows<1>(C, { C.a.data() }, { out.sum.data() });
 	const long    n       = long(C.size());
 	const double* b       = C.b.data();
@@ -168,7 +148,7 @@ double contactDensity(const Store& S, Contacts& C, VolumeRule rule, ContactScrat
 #pragma omp simd reduction(min : nearest)
 	for (long c = 0; c < n; c++)
 		nearest = min(nearest, b[c]);
-	closest = nearest < deepest ? size_t(std::find(C.b.begin(), C.b.end(), nearest) - C.b.begin()) : 0;
+	closest = nearest < deepestContact ? size_t(std::find(C.b.begin(), C.b.end(), nearest) - C.b.begin()) : 0;
 	return nearest;
 }
 

@@ -45,15 +45,12 @@ namespace {
 	bool linked(const Store& S, int32_t i, int32_t j)
 	{
 		for (int k = 0; k < nLinks; k++)
-			if (((S.flags[i] >> k) & 1) && S.neighbour[linkSlot(i, k)] == j) return true;
+			if (holds(S.flags[i], k) && S.neighbour[linkSlot(i, k)] == j) return true;
 		return false;
 	}
-	/// An exposed automaton i touches an interior one j, too, when it is no part of j's body: debris (links that span no volume) or another group.
-	/// Both may come through a rim that has been stretched. Automata of one body keep to their links there.
-	bool foreign(const Store& S, int32_t i, int32_t j) { return __builtin_popcount(S.flags[i] & linkBits) < 3 || S.group[i] != S.group[j]; }
-	bool exposed(const Store& S, int32_t i) { return S.flags[i] & exposedBit; }
-	bool mayTouch(const Store& S, int32_t i, int32_t j) { return exposed(S, i) ? exposed(S, j) || foreign(S, i, j) : exposed(S, j) && foreign(S, j, i); }
-	double reach2(const Store& S, int32_t i, int32_t j, double skin) { return sqr(0.5 * (S.diameter[i] + S.diameter[j]) * (1. + skin)); }
+	bool   exposed(const Store& S, int32_t i) { return S.flags[i] & exposedBit; }
+	bool   touching(const Store& S, int32_t i, int32_t j) { return mayTouch(S.flags[i], S.flags[j], S.group[i] == S.group[j]); }
+	double reach2(const Store& S, int32_t i, int32_t j, double skin) { return sqr(S.restDistance(i, j) * (1. + skin)); }
 	/// Calls f(j) for all automata of the grid that are closer to i than (1 + skin) times their rest distance, i included, until it returns true.
 	/// The size of the cells is at least the largest such distance.
 	template <class F> void around(const Store& S, const CellGrid& grid, int32_t i, double skin, F&& f)
@@ -82,7 +79,7 @@ namespace {
 					const int32_t i = int32_t(b * blockSize + l);
 					if (exposed(S, i) || S.x[i] < grid.x0 - margin || S.y[i] < grid.y0 - margin || S.x[i] > x1 || S.y[i] > y1) continue;
 					around(S, grid, i, skin, [&](int32_t j) {
-						if (!foreign(S, j, i)) return false;
+						if (!touching(S, j, i)) return false;
 						parts[t].push_back(i);
 						return true;
 					});
@@ -102,11 +99,11 @@ namespace {
 					return;
 				}
 		for (int k = 0; k < nLinks; k++)
-			if (((S.flags[i] >> (hadShift + k)) & 1) && !((S.flags[i] >> k) & 1) && S.neighbour[linkSlot(i, k)] == j) s = S.s[linkSlot(i, k)], tau = S.tau[linkSlot(i, k)];
+			if (hasHeld(S.flags[i], k) && !holds(S.flags[i], k) && S.neighbour[linkSlot(i, k)] == j) s = S.s[linkSlot(i, k)], tau = S.tau[linkSlot(i, k)];
 	}
 	/// What a pair of species has in common.
 	struct PairConstants {
-		double d, share, twoG, friction, viscLinear, viscQuadratic;
+		double d, arm, twoG, friction, viscLinear, viscQuadratic;
 	};
 	std::vector<PairConstants> pairConstants(const Store& S)
 	{
@@ -114,9 +111,9 @@ namespace {
 		for (const Species& a : S.species)
 			for (const Species& b : S.species) {
 				const Material &m = S.materials[a.material], &o = S.materials[b.material];
-				PairConstants   p { 0.5 * (a.d + b.d), a.d / (a.d + b.d), 0, std::min(m.friction, o.friction), 0, 0 };
-				p.twoG = seriesTwoG(m.G, o.G, p.share);
-				pairViscosity(m, o, p.viscLinear, p.viscQuadratic);
+				PairConstants   p { 0.5 * (a.d + b.d), arm(a.d, b.d), 0, std::min(m.friction, o.friction), 0, 0 };
+				const PairViscosity v = viscosityOf(m, o);
+				p.twoG = seriesTwoG(m.G, o.G, p.arm), p.viscLinear = v.linear, p.viscQuadratic = v.quadratic;
 				table.push_back(p);
 			}
 		return table;
@@ -126,9 +123,8 @@ namespace {
 		const int32_t        i = C.owner[c], j = C.other[c];
 		const PairConstants& p = table[size_t(S.speciesOf(i)) * S.species.size() + S.speciesOf(j)];
 		C.d[c]                 = p.d;
-		// surfaces meet at d; a pair that is found closer (its link broke, or its automata have just become a surface) starts without push
-		C.rest[c]     = std::min(C.d[c], std::sqrt(sqr(S.x[j] - S.x[i]) + sqr(S.y[j] - S.y[i])));
-		C.share[c] = p.share, C.twoG[c] = p.twoG, C.friction[c] = p.friction, C.viscLinear[c] = p.viscLinear, C.viscQuadratic[c] = p.viscQuadratic;
+		C.rest[c]              = restAtStart(C.d[c], S.distance2(i, j));
+		C.arm[c] = p.arm, C.twoG[c] = p.twoG, C.friction[c] = p.friction, C.viscLinear[c] = p.viscLinear, C.viscQuadratic[c] = p.viscQuadratic;
 	}
 }
 
@@ -169,7 +165,7 @@ void searchContacts(Store& S, Contacts& C, double skin, int threads)
 			const int32_t i  = who[q];
 			row.clear();
 			around(S, grid, i, skin, [&](int32_t j) {
-				if (j != i && mayTouch(S, i, j) && !linked(S, i, j)) row.push_back(j);
+				if (j != i && touching(S, i, j) && !linked(S, i, j)) row.push_back(j);
 				return false;
 			});
 			if (row.empty()) continue;
@@ -188,7 +184,7 @@ void searchContacts(Store& S, Contacts& C, double skin, int threads)
 			C.rowBegin.push_back(C.rowBegin.back() + s);
 	}
 	const size_t m = C.size();
-	for (auto v : { &C.s, &C.tau, &C.rest, &C.d, &C.twoG, &C.friction, &C.viscLinear, &C.viscQuadratic, &C.share })
+	for (auto v : { &C.s, &C.tau, &C.rest, &C.d, &C.twoG, &C.friction, &C.viscLinear, &C.viscQuadratic, &C.arm })
 		v->assign(m, 0.);
 	C.sizeScratch();
 	C.reverse.assign(m, 0);

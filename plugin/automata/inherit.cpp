@@ -72,15 +72,12 @@ void Solver::inheritState(const Solver& old)
 			const bool before = (O.flags[o] >> k) & 1, now = (S.flags[i] >> k) & 1;
 			same &= before == now && (!now || S.id[S.neighbour[linkSlot(i, k)]] == O.id[O.neighbour[linkSlot(o, k)]]);
 		}
-		S.rest[i] = O.rest[o], S.jOff[i] = O.jOff[o];
+		S.rest[i] = O.rest[o], S.factor[i] = O.factor[o];
 		if (same) continue;
 		// the volume goes on from where it was (the change over the last step is lost: J was taken before the last move)
-		if (options.volumeRule == VolumeRule::affine && S.jOff[i] == 0.) S.jOff[i] = 1.;
-		if (options.volumeRule == VolumeRule::affine) keepVolume(i, S.J[i]);
-		else {
-			keepSum(i);
-			if (S.flags[i] & linkBits && O.blocks[size_t(o) / blockSize].contact) S.rest[i] += old.contactSum(size_t(o)); // its contacts come back with the search
-		}
+		if (options.volumeRule == VolumeRule::affine && S.factor[i] == 0.) S.factor[i] = 1.;
+		keepVolume(i, S.J[i]);
+		if (options.volumeRule != VolumeRule::affine && S.flags[i] & linkBits && O.blocks[size_t(o) / blockSize].contact) S.rest[i] += old.contactSum(size_t(o)); // its contacts come back with the search
 	}
 	for (int32_t o : old.tied) { // tied ones keep their places in the order of tie()
 		const int64_t i = indexIn(old, O.id[o]) < 0 ? -1 : indexOf(O.id[o]);

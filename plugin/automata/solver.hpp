@@ -8,8 +8,6 @@
 
 namespace mca::automata {
 
-constexpr int breakPeriod = 4; ///< steps between two tests for breaking links
-
 struct Options {
 	VolumeRule volumeRule   = VolumeRule::affine;
 	double     linkFactor   = 1.2;  ///< automata closer than this times their rest distance are linked at build [-]
@@ -114,9 +112,16 @@ public:
 	double equivalentStress(size_t i) const;
 	/// The automaton that limits the time step.
 	size_t stiffestAutomaton() const;
-	/// All state as bytes, and back; continuing is bit-identical. load throws Error on damaged data.
+	/// All state as bytes, and back; continuing is bit-identical. load throws Error and changes nothing when the bytes are no state:
+	/// every length, index, flag and number is checked. Damage that leaves a possible state is not seen: whoever keeps the bytes keeps a checksum.
 	std::string save() const;
 	void        load(const std::string& bytes);
+	/// Numbers of all automata, ascending.
+	std::vector<int> ids() const;
+	/// Throws Error unless `order` is ids(): what the caller keeps beside the saved state belongs to it.
+	void checkOrder(const std::vector<int>& order) const;
+	/// Whether automaton `id` was the t-th to be tied.
+	bool isTied(size_t t, int32_t id) const { return t < tied.size() && store.id[size_t(tied[t])] == id; }
 	/// The timers of counters run only when asked.
 	bool timing = false;
 
@@ -140,27 +145,50 @@ private:
 	void   search();
 	void   wake();
 	void   wakeAround(size_t block);
-	template <class F> void eachBreaking(F&& f) const; ///< f(automaton, link) for pairs that fulfil a criterion, until it returns true
+	template <class F> void eachBreaking(F&& f) const;
 	bool   breaking() const;
-	double linkDeterminant(size_t i) const;
+	double determinantNow(size_t i) const;
 	void   keepVolume(size_t i, double J);
-	void   keepSum(size_t i);
+	void   scaleStresses(size_t i, double ratio);
 	void   breakLinks();
 	void   settleVolumes();
 	void   filterVolumes();
 	void   shiftVolume(size_t i, double J);
-	void   checkResults(double nearestContact, size_t closest);
-	double stateEnergy(size_t i, double J) const;
-	double deviatoricEnergy(size_t i) const; ///< of links and szz [J/m]
+	// computeForces() in its order
+	void  exchangeVolumes();
+	Extra extra();
+	void  volumes(const Extra&);
+	void  stresses(const Extra&);
+	void  forces(const Extra&);
+	void  heats();
+	void  bookPasses();
+	void  limitStep();
+	void  checkResults(double nearestContact, size_t closest);
+	// integrate()
+	struct ForceShares {
+		double volX, volY, visX, visY;
+	};
+	void        checkForces();
+	ForceShares sharesOf(size_t i) const;
+	void        bookBlock(size_t b, double kick, double after, const double* vx, const double* vy, const double* omega);
+	void        bookStep(double kick, double after);
+	double coldEnergyAt(size_t i, double J) const;
+	double deviatorEnergyOf(size_t i) const; ///< of links and szz [J/m]
 	template <class F> void eachAwake(F&& f);
 	template <class F> void archive(F&& f);
+	void                    checkState() const; ///< after loading: throws Error unless all fits together
 	[[noreturn]] void       overlapError(size_t i, size_t j, double ratio) const;
 
 	std::vector<int32_t>     place;
 	std::vector<char>        isNew; ///< by number, in build only
 	std::vector<BlockResult> results;
 	std::vector<BlockWork>   works;
-	std::vector<std::vector<double>> partials; ///< of integrate: work per block
+	/// Work in a step of one block [J/m], impulses [N s/m].
+	struct StepWork {
+		double volumetric = 0, viscous = 0, deviatoric = 0, external = 0, boundary = 0, impulseX = 0, impulseY = 0, centre = 0;
+	};
+	std::vector<StepWork>    stepWorks;
+	ContactWork              contactWork; ///< of the present step
 	ContactScratch           scratch;
 	struct {
 		std::vector<double> volX, volY, visX, visY; ///< volumetric and viscous share of the forces of links

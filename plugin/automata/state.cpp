@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The whole state as bytes, and sorting of the arrays in space.
+// The whole state as bytes, and sorting of the arrays in space. What a state must be like to be let in: check_state.cpp.
 #include "solver.hpp"
 #include "space_order.hpp"
 #include <algorithm>
@@ -7,90 +7,125 @@
 #include <cstring>
 #include <numeric>
 #include <tuple>
+#include <type_traits>
 
 namespace mca::automata {
 namespace {
 	constexpr uint64_t magic = 0x4d43413041303033ULL ^ lawsVersion(); // layout of this file; change it with every change of the arrays
 
+	[[noreturn]] void damaged(const char* what) { throw Error(std::string("the saved state of the automata is damaged: ") + what + "."); }
+
 	struct Writer {
 		std::string out;
 		void        raw(const void* p, size_t n) { out.append(static_cast<const char*>(p), n); }
-		template <class T> void operator()(std::vector<T>& v)
+		template <class T> void number(T& v) { raw(&v, sizeof v); }
+		void        truth(bool& v) { out.push_back(v ? 1 : 0); }
+		template <class T> void choice(T& v, int) { out.push_back(char(v)); }
+		template <class T> void resize(std::vector<T>& v, size_t)
 		{
-			static_assert(std::is_trivially_copyable<T>::value, "bytes only");
 			const uint64_t n = v.size();
 			raw(&n, sizeof n);
-			raw(v.data(), n * sizeof(T));
 		}
-		template <class T> void value(T& v) { raw(&v, sizeof v); }
 	};
 	struct Reader {
 		const std::string& in;
 		size_t             at = 0;
 		void               raw(void* p, size_t n)
 		{
-			if (n > in.size() - at) throw Error("the saved state of the automata ends too early: the file is damaged or from another version.");
+			if (n > in.size() - at) damaged("it ends too early");
 			if (n) std::memcpy(p, in.data() + at, n);
 			at += n;
 		}
-		template <class T> void operator()(std::vector<T>& v)
+		template <class T> void number(T& v) { raw(&v, sizeof v); }
+		unsigned char byte()
+		{
+			unsigned char c;
+			raw(&c, 1);
+			return c;
+		}
+		void truth(bool& v)
+		{
+			const unsigned char c = byte();
+			if (c > 1) damaged("a truth value is neither true nor false");
+			v = c == 1;
+		}
+		template <class T> void choice(T& v, int n)
+		{
+			const int c = byte();
+			if (c >= n) damaged("a choice is none of those there are");
+			v = T(c);
+		}
+		/// least: bytes of an entry; no more room is made than the bytes that follow can fill
+		template <class T> void resize(std::vector<T>& v, size_t least)
 		{
 			uint64_t n = 0;
 			raw(&n, sizeof n);
-			if (n > (in.size() - at) / sizeof(T)) throw Error("the saved state of the automata is damaged: an array is longer than the file.");
-			v.resize(n);
-			raw(v.data(), n * sizeof(T));
+			if (n > (in.size() - at) / least) damaged("an array is longer than the file");
+			v.resize(size_t(n));
 		}
-		template <class T> void value(T& v) { raw(&v, sizeof v); }
 	};
-	uint64_t checksum(const char* p, size_t n)
-	{
-		uint64_t h = 1469598103934665603ULL; // FNV-1a over 8-byte words: finds any damaged word
-		for (size_t i = 0; i + 8 <= n; i += 8) {
-			uint64_t w;
-			std::memcpy(&w, p + i, 8);
-			h = (h ^ w) * 1099511628211ULL;
+	// truth values and choices one by one: in raw bytes they could be anything
+	template <class F> struct Fields {
+		F& f;
+		template <class T> std::enable_if_t<std::is_arithmetic_v<T>> operator()(T& v)
+		{
+			if constexpr (std::is_same_v<T, bool>) f.truth(v);
+			else f.number(v);
 		}
-		for (size_t i = n - n % 8; i < n; i++)
-			h = (h ^ uint8_t(p[i])) * 1099511628211ULL;
-		return h;
-	}
+		void operator()(YieldKind& v) { f.choice(v, yieldKinds); }
+		void operator()(EosKind& v) { f.choice(v, eosKinds); }
+		void operator()(VolumeRule& v) { f.choice(v, 3); }
+		void operator()(Block& b) { each(b.species, b.count, b.intact, b.mixed, b.contact, b.awake, b.moving, b.ringsAwake); }
+		void operator()(Species& s) { each(s.material, s.d); }
+		void operator()(Material& m) { eachConstant(m, *this); }
+		void operator()(BlockResult& r) { each(r.stiffest, r.closing, r.widest, r.nearest, r.criterion, r.clamped, r.bad); }
+		void operator()(Options& o) { each(o.volumeRule, o.linkFactor, o.skin, o.sleeping, o.account, o.contacts, o.volumeFilter, o.fullLinks); }
+		void operator()(Counters& c) { f.number(c); }
+		void operator()(Account& a) { f.number(a); }
+		template <class T> void operator()(std::vector<T>& v)
+		{
+			constexpr bool plain = std::is_arithmetic_v<T>;
+			f.resize(v, plain ? sizeof(T) : sizeof(T) * 3 / 4); // field by field there are no gaps
+			if constexpr (plain) f.raw(v.data(), v.size() * sizeof(T));
+			else
+				for (T& e : v)
+					(*this)(e);
+		}
+		template <class... T> void each(T&... v) { ((*this)(v), ...); }
+	};
+	static_assert(sizeof(Account) % sizeof(double) == 0 && sizeof(Counters) % sizeof(double) == 0, "numbers only, no gaps");
 }
 
-template <class F> void Solver::archive(F&& f)
+template <class F> void Solver::archive(F&& to)
 {
+	Fields<std::remove_reference_t<F>> f { to };
 	store.eachArray(f);
-	f(store.neighbour), f(store.s), f(store.tau), f(store.blocks), f(store.species), f(store.materials);
+	f.each(store.neighbour, store.s, store.tau, store.blocks, store.species, store.materials);
 	contacts.each(f);
 	for (auto v : { &scratch.sum, &scratch.square, &scratch.old, &scratch.scale, &scratch.fx, &scratch.fy, &scratch.torque, &scratch.volX, &scratch.volY, &scratch.visX, &scratch.visY,
 	                &accountForce.volX, &accountForce.volY, &accountForce.visX, &accountForce.visY, &searchX, &searchY, &tiedVx, &tiedVy, &tiedW })
 		f(*v);
-	for (auto v : { &place, &exposed, &adjacentBegin, &adjacent, &awake, &tied })
-		f(*v);
-	f(results);
-	f.value(options), f.value(counters), f.value(time), f.value(lastDt), f.value(lastMove), f.value(dtLimit), f.value(contactSpeed2), f.value(topologyChanged), f.value(searchDue), f.value(sums), f.value(lastSort), f.value(filterTime), f.value(flows);
+	f.each(place, exposed, adjacentBegin, adjacent, awake, tied, results, options, counters, time, lastDt, lastMove, dtLimit, contactSpeed2, topologyChanged, searchDue, sums, lastSort, filterTime, flows);
 }
 
 std::string Solver::save() const
 {
 	Writer w;
+	w.raw(&magic, sizeof magic);
 	const_cast<Solver*>(this)->archive(w);
-	const uint64_t head[2] = { magic, checksum(w.out.data(), w.out.size()) };
-	return std::string(reinterpret_cast<const char*>(head), sizeof head) + w.out;
+	return std::move(w.out);
 }
 
 void Solver::load(const std::string& bytes)
 {
-	uint64_t head[2] = { 0, 0 };
-	if (bytes.size() < sizeof head) throw Error("the saved state of the automata is empty or damaged.");
-	std::memcpy(head, bytes.data(), sizeof head);
-	if (head[0] != magic) throw Error("the saved state of the automata has another layout: it was written by another version of the plugin.");
-	const std::string body = bytes.substr(sizeof head);
-	if (head[1] != checksum(body.data(), body.size())) throw Error("the saved state of the automata is damaged: its checksum does not fit.");
+	Reader   r { bytes };
+	uint64_t kind = 0;
+	r.number(kind);
+	if (kind != magic) throw Error("the saved state of the automata has another layout: it is damaged, or another version of the plugin has written it and must load it.");
 	Solver fresh; // nothing of this solver changes unless all could be read
-	Reader r { body };
 	fresh.archive(r);
-	if (r.at != body.size()) throw Error("the saved state of the automata is damaged: bytes are left over.");
+	if (r.at != bytes.size()) damaged("bytes are left over");
+	fresh.checkState();
 	fresh.timing = timing;
 	fresh.works.assign(fresh.store.blocks.size(), {});
 	fresh.contacts.sizeScratch();
@@ -102,6 +137,21 @@ void Solver::load(const std::string& bytes)
 		const int32_t a = contacts.owner[c] / blockSize, b = contacts.other[c] / blockSize;
 		if (a < b) contactAdjacent.push_back({ a, b });
 	}
+}
+
+std::vector<int> Solver::ids() const
+{
+	std::vector<int> v;
+	for (size_t q = 0; q < place.size(); q++)
+		if (place[q] >= 0) v.push_back(int(q));
+	return v;
+}
+
+void Solver::checkOrder(const std::vector<int>& order) const
+{
+	if (order != ids())
+		throw Error("the list of bodies in the file (" + std::to_string(order.size()) + " ids) is not that of the saved automata (" + std::to_string(ids().size())
+		            + "): the file is damaged or was edited; bodies are added and erased after loading.");
 }
 
 // Bodies come in any order and debris moves: entries that are near in space are brought near in memory. The order of each

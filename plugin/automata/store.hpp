@@ -2,8 +2,10 @@
 // What the automata solver keeps: flat arrays, one entry per automaton, in blocks of 64 that hold one species (material and diameter) each,
 // ordered in space. The six links of an automaton are planes of 64 inside its block; contacts are a separate list, since few automata have any.
 #pragma once
-#include "../kernels/material.hpp"
-#include "../kernels/pair.hpp"
+#include "../kernels/automaton/contact.hpp"
+#include "../kernels/automaton/force.hpp"
+#include "../kernels/automaton/fracture.hpp"
+#include "../kernels/automaton/links.hpp"
 #include <algorithm>
 #include <cstdint>
 #include <vector>
@@ -11,21 +13,9 @@
 namespace mca::automata {
 
 constexpr int blockSize = 64;
-constexpr int nLinks    = Lattice<2>::neighbours;
-/// det F0 of the links that measure a volume [-]: three in a row or a star have 0.25; three with a gap have 0.17, two have 0.083 and measure none
-constexpr double minVolume = 0.2;
+constexpr int nodeSize = 8, pushSize = 4; ///< numbers of the records that neighbours read
 /// place of link k of automaton i in the link arrays
 inline size_t linkSlot(size_t i, int k) { return ((i / blockSize) * nLinks + k) * blockSize + i % blockSize; }
-
-/// Bits of Store::flags
-enum Flag : int32_t {
-	linkBits   = 0x3f,    ///< bit k: link k holds
-	halfShift  = 8,       ///< bits 8..13: link k counts half (on a weighted rim)
-	halfBits   = 0x3f00,  //
-	hadShift   = 16,      ///< bits 16..21: link k once held (a broken pair stays broken)
-	exposedBit = 1 << 24, ///< may touch something: rim, broken or flowing
-	tiedBit    = 1 << 25, ///< carried by the grid
-};
 
 struct Species {
 	int    material = 0;
@@ -43,21 +33,6 @@ struct Block {
 	bool    ringsAwake = false; ///< the blocks around it have been woken
 };
 
-/// Series rule for the pair of two materials [Pa]; q = arm of the first / distance.
-inline double seriesTwoG(double a, double b, double q) { return a > 0 && b > 0 ? 2. / (q / a + (1. - q) / b) : 0.; }
-/// The smaller of both sides' viscous coefficients [Pa s/m], [Pa s2/m2]: a heavy neighbour must not overdamp a light automaton.
-inline void pairViscosity(const Material& a, const Material& b, double& linear, double& quadratic)
-{
-	linear    = std::min(a.viscosity.linear * a.eos.rho0 * a.eos.c0, b.viscosity.linear * b.eos.rho0 * b.eos.c0);
-	quadratic = std::min(a.viscosity.quadratic * a.eos.rho0, b.viscosity.quadratic * b.eos.rho0);
-}
-
-/// Pairs of them have the same constants.
-inline bool samePairs(const Material& a, const Material& b)
-{
-	return a.G == b.G && a.friction == b.friction && a.eos.rho0 == b.eos.rho0 && a.eos.c0 == b.eos.c0 && a.viscosity.linear == b.viscosity.linear && a.viscosity.quadratic == b.viscosity.quadratic;
-}
-
 struct Store {
 	// one entry per automaton; SI units per unit thickness
 	std::vector<double> x, y, vx, vy, omega, angle;      ///< position [m], velocity [m/s], spin [rad/s], turned angle [rad]
@@ -66,7 +41,7 @@ struct Store {
 	std::vector<double> diameter;                        ///< [m]
 	std::vector<double> cell, invN, rest;                ///< Omega0 [m2]; 1/N of the volume rule; its sum at rest [-]
 	std::vector<double> J, dTheta, P, h;                 ///< volume ratio, its last increment, pressure [Pa], pressure share of (6)
-	std::vector<double> jOff;                            ///< affine rule: J of the links = jOff det F; 0 = too few links to have a volume
+	std::vector<double> factor;                            ///< affine rule: J of the links = factor det F; 0 = too few links to have a volume
 	std::vector<double> szz, eqps, temperature;          ///< [Pa], [-], [K]
 	std::vector<double> strength;                        ///< factor on the fracture criteria [-]
 	std::vector<double> criterion;                       ///< largest criterion / its limit [-]; a pair breaks at a mean of 1
@@ -77,7 +52,7 @@ struct Store {
 	std::vector<int32_t> flags, id, group;               ///< Flag bits; caller's number; link group
 	std::vector<double> weight;                          ///< share of the full cell [-]
 	// links: nLinks planes per block
-	std::vector<int32_t> neighbour;                      ///< automaton at the other end, itself where there is none; there the same link is (k + 3) % 6
+	std::vector<int32_t> neighbour;                      ///< automaton at the other end, itself where there is none; there the same link is Lattice::opposite(k)
 	std::vector<double>  s, tau;                         ///< J times normal and shear pair stress of this side [Pa]
 	// records that neighbours read; rebuilt in every step, so not part of the saved state
 	std::vector<double>  node; ///< 8 per automaton: x, y, vx, vy, omega, dTheta, 0, 0
@@ -86,15 +61,15 @@ struct Store {
 	void packBlock(size_t b)
 	{
 		for (size_t i = b * blockSize; i < (b + 1) * blockSize; i += lanes) {
-			scatter4(node.data() + i * 8, 8, load(&x[i]), load(&y[i]), load(&vx[i]), load(&vy[i]));
-			scatter4(node.data() + i * 8 + 4, 8, load(&omega[i]), load(&dTheta[i]), v8 {}, v8 {});
+			scatter4(node.data() + i * nodeSize, nodeSize, load(&x[i]), load(&y[i]), load(&vx[i]), load(&vy[i]));
+			scatter4(node.data() + i * nodeSize + 4, nodeSize, load(&omega[i]), load(&dTheta[i]), v8 {}, v8 {});
 		}
 	}
 	/// All records anew: after building, sorting, loading.
 	void packAll()
 	{
-		node.assign(size() * 8, 0.);
-		push.resize(size() * 4, 0.);
+		node.assign(size() * nodeSize, 0.);
+		push.resize(size() * pushSize, 0.);
 		for (size_t b = 0; b < blocks.size(); b++)
 			packBlock(b);
 	}
@@ -106,16 +81,16 @@ struct Store {
 	int32_t speciesOf(size_t i) const { return blocks[i / blockSize].species; }
 	/// of the pair of this species with automaton j [Pa]; q = arm of this side / distance
 	double pairTwoG(int32_t mine, size_t j, double q) const { return seriesTwoG(materials[species[mine].material].G, materials[species[speciesOf(j)].material].G, q); }
-	void   pairViscosity(int32_t mine, size_t j, double& linear, double& quadratic) const
-	{
-		automata::pairViscosity(materials[species[mine].material], materials[species[speciesOf(j)].material], linear, quadratic);
-	}
+	PairViscosity pairViscosity(int32_t mine, size_t j) const { return viscosityOf(materials[species[mine].material], materials[species[speciesOf(j)].material]); }
 	const Material& materialOf(const Block& b) const { return materials[species[b.species].material]; }
+	const Material& materialOf(size_t i) const { return materials[species[speciesOf(i)].material]; }
+	double          distance2(size_t i, size_t j) const { return sqr(x[j] - x[i]) + sqr(y[j] - y[i]); } ///< [m2]
+	double          restDistance(size_t i, size_t j) const { return 0.5 * (diameter[i] + diameter[j]); } ///< [m]
 
 	/// f(name, vector) for every array with one entry per automaton; optional ones may be empty
 	template <class F> void eachArray(F&& f)
 	{
-		f(jOff), f(x), f(y), f(vx), f(vy), f(omega), f(angle), f(mass), f(inertia), f(ax), f(ay), f(ar), f(diameter), f(cell), f(invN), f(rest), f(J), f(dTheta), f(P), f(h);
+		f(factor), f(x), f(y), f(vx), f(vy), f(omega), f(angle), f(mass), f(inertia), f(ax), f(ay), f(ar), f(diameter), f(cell), f(invN), f(rest), f(J), f(dTheta), f(P), f(h);
 		f(szz), f(eqps), f(temperature), f(strength), f(criterion), f(heat), f(fx), f(fy), f(torque), f(ex), f(ey), f(et), f(dampX), f(dampY), f(weight);
 		f(flags), f(id), f(group);
 	}
@@ -126,7 +101,7 @@ struct Contacts {
 	std::vector<int32_t> owner, other, reverse; ///< automata; place of the other half
 	std::vector<double>  s, tau;                ///< as for links [Pa]
 	std::vector<double>  rest;                            ///< rest distance of this side: that of the two automata, or less when they came into contact already closer [m]
-	std::vector<double>  d, twoG, friction, viscLinear, viscQuadratic, share; ///< constants of the pair; share = q_owner/(q_owner+q_other)
+	std::vector<double>  d, twoG, friction, viscLinear, viscQuadratic, arm; ///< constants of the pair; arm of the owner over the distance
 	std::vector<double>  perTwoG, perOwnG;      ///< 1/twoG, 1/G of the owner's material [1/Pa]; 0 where that is zero
 	std::vector<double>  a, b, c;               ///< scratch per half-contact
 	std::vector<double>  dx, dy, r2;            ///< vector from owner to other [m] and its square, of this step
@@ -143,7 +118,7 @@ struct Contacts {
 	size_t               rows() const { return rowOwner.size(); }
 	template <class F> void each(F&& f)
 	{
-		f(owner), f(other), f(reverse), f(s), f(tau), f(rest), f(d), f(twoG), f(friction), f(viscLinear), f(viscQuadratic), f(share), f(rowOwner), f(rowBegin);
+		f(owner), f(other), f(reverse), f(s), f(tau), f(rest), f(d), f(twoG), f(friction), f(viscLinear), f(viscQuadratic), f(arm), f(rowOwner), f(rowBegin);
 	}
 };
 }

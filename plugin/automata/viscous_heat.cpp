@@ -7,19 +7,18 @@ void viscousHeat(Store& S, size_t b, double dt, BlockWork* work)
 {
 	const Block&    B = S.blocks[b];
 	const Material& m = S.materialOf(B);
-	const double    d = S.species[B.species].d, perMass = 1. / m.eos.rho0;
+	const double    perMass = 1. / m.eos.rho0;
 	double          sum = 0;
 	for (int l = 0; l < B.count; l++) {
 		const size_t i = b * blockSize + l;
 		double       q = 0;
 		for (int k = 0; k < nLinks; k++) {
-			if (!((S.flags[i] >> k) & 1)) continue;
-			const int32_t j  = S.neighbour[linkSlot(i, k)];
-			const double  dx = S.x[j] - S.x[i], dy = S.y[j] - S.y[i], along = fma(dx, S.vx[j] - S.vx[i], dy * (S.vy[j] - S.vy[i]));
-			const double  dij = 0.5 * (d + S.diameter[j]), w = (S.flags[i] >> (halfShift + k)) & 1 ? 0.5 : 1.;
-			double        c1 = m.viscosity.linear * m.eos.rho0 * m.eos.c0, c2 = m.viscosity.quadratic * m.eos.rho0;
-			if (B.mixed) S.pairViscosity(B.species, j, c1, c2);
-			q += 0.5 * w * viscousCoefficient(along, 1. / fma(dx, dx, dy * dy), c1, c2, Lattice<2>::width(dij)) * along * dt; // this side's half
+			if (!holds(S.flags[i], k)) continue;
+			const int32_t       j = S.neighbour[linkSlot(i, k)];
+			const Vec<double>   r { S.x[j] - S.x[i], S.y[j] - S.y[i] }, v { S.vx[j] - S.vx[i], S.vy[j] - S.vy[i] };
+			const double        along = dot(r, v);
+			const PairViscosity c = B.mixed ? S.pairViscosity(B.species, j) : viscosityOf(m);
+			q += 0.5 * linkWeight(S.flags[i], k) * viscousCoefficient(along, 1. / dot(r, r), c.linear, c.quadratic, Lattice::width(S.restDistance(i, j))) * along * dt; // this side's half
 		}
 		S.heat[i] += q * perMass / S.cell[i];
 		sum += q;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "volume_filter.hpp"
+#include "../kernels/automaton/filter.hpp"
 #include "solver.hpp"
 
 namespace mca::automata {
@@ -8,12 +8,12 @@ namespace {
 	bool curvatures(const Store& S, size_t b, double* takesPart, double* curvature)
 	{
 		const size_t   base = b * blockSize;
-		const double * J = S.J.data(), *eqps = S.eqps.data() + base, *jOff = S.jOff.data() + base;
+		const double * J = S.J.data(), *eqps = S.eqps.data() + base, *factor = S.factor.data() + base;
 		const int32_t *flags = S.flags.data() + base, *nb = S.neighbour.data() + b * nLinks * blockSize;
 		double         any = 0;
 #pragma omp simd reduction(max : any)
 		for (int l = 0; l < blockSize; l++) {
-			takesPart[base + l] = exchangesVolume(eqps[l], flags[l], jOff[l]) ? 1. : 0.;
+			takesPart[base + l] = exchangesVolume(eqps[l], flags[l], factor[l]) ? 1. : 0.;
 			any                 = max(any, takesPart[base + l]);
 		}
 		for (int l = 0; l < blockSize; l++)
@@ -77,10 +77,9 @@ void Solver::shiftVolume(size_t i, double J)
 	Store&       S     = store;
 	const Block& B     = S.blocks[i / blockSize];
 	const double ratio = J / S.J[i];
-	if (options.account) sums.coupling += (S.materialOf(B).eos.heats() ? 0. : stateEnergy(i, S.J[i]) - stateEnergy(i, J)) + deviatoricEnergy(i) * (1. - ratio);
+	if (options.account) sums.coupling += (S.materialOf(B).eos.heats() ? 0. : coldEnergyAt(i, S.J[i]) - coldEnergyAt(i, J)) + deviatorEnergyOf(i) * (1. - ratio);
 	S.J[i] = J;
-	S.jOff[i] *= ratio;
-	for (int k = 0; k < nLinks; k++)
-		S.s[linkSlot(i, k)] *= ratio, S.tau[linkSlot(i, k)] *= ratio;
+	S.factor[i] *= ratio;
+	scaleStresses(i, ratio);
 }
 }

@@ -66,7 +66,7 @@ set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 string(REGEX REPLACE "^3\\." "" minor "${MCA_YADE_PYTHON}")
 math(EXPR minor "${minor} + 1")
 set(CPACK_DEBIAN_PACKAGE_DEPENDS
-    "yade (= ${MCA_YADE_PACKAGE}), libyade (= ${MCA_YADE_PACKAGE}), python3 (>= ${MCA_YADE_PYTHON}), python3 (<< 3.${minor}), python3-numpy, python3-scipy, python3-matplotlib, python3-vtk9")
+    "yade (= ${MCA_YADE_PACKAGE}), libyade (= ${MCA_YADE_PACKAGE}), python3 (>= ${MCA_YADE_PYTHON}), python3 (<< 3.${minor}), python3-numpy, python3-scipy, python3-matplotlib, python3-pil, python3-vtk9")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS "${MCA_LIB_DIR}" "${MCA_YADE_LIBDIR}")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS python3-tqdm)

@@ -14,6 +14,15 @@ def compressed(path, data):
 		f.write(gzip.compress(data, 9, mtime=0))
 
 
+def dateOf(source):
+	"""Of the last commit; a fixed one outside of git or without it."""
+	try:
+		date = subprocess.run(['git', '-C', source, 'log', '-1', '--format=%aD'], capture_output=True, text=True).stdout.strip()
+	except OSError:
+		date = ''
+	return date or 'Thu, 01 Jan 2026 00:00:00 +0000'
+
+
 def main(root, source, version, yadeLibDir, maintainer, packageVersion, suite):
 	lib = os.path.join(root, 'lib/python3/dist-packages/yade_mca/lib')
 	for path in glob.glob(os.path.join(lib, '**', '*.so'), recursive=True):
@@ -23,7 +32,7 @@ def main(root, source, version, yadeLibDir, maintainer, packageVersion, suite):
 		page = f.read()
 	compressed(os.path.join(root, 'share/man/man1/yade-mca.1.gz'), page)
 	compressed(os.path.join(root, 'share/man/man1/yade-mca-batch.1.gz'), b'.so man1/yade-mca.1\n')
-	date = subprocess.run(['git', '-C', source, 'log', '-1', '--format=%aD'], capture_output=True, text=True).stdout.strip() or 'Thu, 01 Jan 2026 00:00:00 +0000'
+	date = dateOf(source)
 	compressed(os.path.join(root, 'share/doc/yade-mca/changelog.gz'),
 	           ('yade-mca (%s) %s; urgency=medium\n\n  * See plugin/CHANGELOG.md of the sources.\n\n -- %s  %s\n' % (packageVersion, suite, maintainer, date)).encode())
 	for folder, _, names in os.walk(root):

@@ -95,7 +95,9 @@ public:
 
 	template <class Archive> void fields(Archive& a);
 
-	/// Look-ups, after reading a saved state.
+	/// After reading a saved state of a grid with so many open nodes: throws Error unless all fits together.
+	void checkState(int openNodes) const;
+	/// Look-ups, after that.
 	void indexAll();
 
 private:

@@ -114,12 +114,17 @@ public:
 	/// State now at n points of the straight line from (x0,y0) to (x1,y1) [m], present positions; points outside all blocks are left out.
 	std::vector<Sample> probeLine(double x0, double y0, double x1, double y1, int n) const;
 
-	/// Whole state; restoring it into any Grid continues bit-identically.
+	/// Whole state; restoring it into any Grid continues bit-identically. restore throws Error and changes nothing when the bytes are no state:
+	/// every length, index, flag and number is checked. Damage that leaves a possible state is not seen: whoever keeps the bytes keeps a checksum.
 	std::vector<char> save() const;
 	void              restore(const std::vector<char>& state);
 
 private:
+	Grid& operator=(Grid&&) = default; ///< of restore()
 	template <class Archive> void fields(Archive& a);
+	void                          checkState() const; ///< after reading: throws Error unless all fits together
+	void                          checkBlock(const Block& b, int copies) const;
+	void                          checkOpen() const;
 	void                          allocateOpen();
 	void                          join();
 	void                          refuseHangingNodes() const;

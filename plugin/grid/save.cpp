@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The whole state of a grid as bytes, and back. One function lists the fields for both directions.
+// The whole state of a grid as bytes, and back. One function lists the fields for both directions; what they must be like to be let in: check_state.cpp.
 #include "grid.hpp"
 #include <cstring>
 #include <type_traits>
@@ -7,7 +7,9 @@
 namespace mca::grid {
 
 namespace {
-	constexpr uint64_t formatVersion = 1 ^ lawsVersion(); // changes with the laws and their constants
+	constexpr uint64_t formatVersion = 2 ^ lawsVersion(); // changes with the laws and their constants
+
+	[[noreturn]] void damaged() { throw Error("grid: the saved state is damaged; it cannot be restored."); }
 
 	struct Writer {
 		static constexpr bool reading = false;
@@ -22,24 +24,48 @@ namespace {
 		static constexpr bool    reading = true;
 		const std::vector<char>& bytes;
 		size_t                   at = 0;
+		size_t                   left() const { return bytes.size() - at; }
 		void raw(void* p, size_t n)
 		{
-			if (n > bytes.size() - at) throw Error("grid: the saved state is cut short; it cannot be restored.");
+			if (n > left()) throw Error("grid: the saved state is cut short; it cannot be restored.");
 			if (n) std::memcpy(p, bytes.data() + at, n); // the address of an empty array may be null
 			at += n;
 		}
 	};
 
-	template <class A, class T> std::enable_if_t<std::is_arithmetic_v<T> || std::is_enum_v<T>> io(A& a, T& v) { a.raw(&v, sizeof v); }
+	template <class A, class T> std::enable_if_t<std::is_arithmetic_v<T> && !std::is_same_v<T, bool>> io(A& a, T& v) { a.raw(&v, sizeof v); }
+	/// a byte of a file may be neither true nor false, and a number none of the choices
+	template <class A> void io(A& a, bool& v)
+	{
+		unsigned char c = v ? 1 : 0;
+		a.raw(&c, 1);
+		if (c > 1) damaged();
+		v = c == 1;
+	}
+	template <class A, class T> void choice(A& a, T& v, int n)
+	{
+		int k = int(v);
+		a.raw(&k, sizeof k);
+		if (k < 0 || k >= n) damaged();
+		v = T(k);
+	}
+	template <class A> void io(A& a, YieldKind& v) { choice(a, v, yieldKinds); }
+	template <class A> void io(A& a, EosKind& v) { choice(a, v, eosKinds); }
+	template <class A> void io(A& a, LoadKind& v) { choice(a, v, 3); }
+	/// no more room is made than what follows can fill
+	template <class A, class C> void resize(A& a, C& v, size_t bytesEach)
+	{
+		uint64_t n = v.size();
+		a.raw(&n, sizeof n);
+		if constexpr (A::reading) {
+			if (n > a.left() / bytesEach) damaged();
+			v.resize(size_t(n));
+		}
+	}
 	template <class A> void io(A& a, std::string& s)
 	{
-		uint64_t n = s.size();
-		io(a, n);
-		if constexpr (A::reading) {
-			if (n > a.bytes.size()) throw Error("grid: the saved state is damaged; it cannot be restored.");
-			s.assign(n, ' ');
-		}
-		a.raw(s.data(), n);
+		resize(a, s, 1);
+		a.raw(s.data(), s.size());
 	}
 	template <class A, class T> void io(A& a, std::vector<T>& v);
 	template <class A> void          io(A& a, Table& t) { io(a, t.time), io(a, t.value); }
@@ -65,13 +91,8 @@ namespace {
 	}
 	template <class A, class T> void io(A& a, std::vector<T>& v)
 	{
-		uint64_t n = v.size();
-		io(a, n);
-		if constexpr (A::reading) {
-			if (n > a.bytes.size()) throw Error("grid: the saved state is damaged; it cannot be restored.");
-			v.resize(n);
-		}
-		if constexpr (std::is_arithmetic_v<T>) a.raw(v.data(), n * sizeof(T));
+		resize(a, v, std::is_same_v<T, Table> ? 16 : std::is_same_v<T, Gauge> ? 40 : sizeof(T) * 3 / 4);
+		if constexpr (std::is_arithmetic_v<T>) a.raw(v.data(), v.size() * sizeof(T));
 		else
 			for (T& e : v) io(a, e);
 	}
@@ -85,7 +106,8 @@ namespace {
 		int ni = b.ni, nj = b.nj;
 		io(a, ni), io(a, nj);
 		if constexpr (A::reading) {
-			if (ni < 1 || nj < 1 || size_t(ni) * size_t(nj) > a.bytes.size()) throw Error("grid: the saved state is damaged; it cannot be restored.");
+			// at least twelve arrays of all nodes follow, rows of whole cache lines
+			if (ni < 1 || nj < 1 || (uint64_t(ni) + 8) / 8 * 8 * (uint64_t(nj) + 1) > a.left() / (12 * sizeof(double))) damaged();
 			b.allocate(ni, nj);
 		}
 		io(a, b.arena), io(a, b.awake), io(a, b.moving), io(a, b.allAwake), io(a, b.firstCopy), io(a, b.nCopies), io(a, b.interiorOpen),
@@ -100,23 +122,17 @@ namespace {
 	}
 }
 
-template <class A> void Boundary::fields(A& a)
-{
-	io(a, tables_), io(a, constraints_), io(a, edgeLoads_), io(a, nodeLoads_);
-	if constexpr (A::reading) indexAll();
-}
+template <class A> void Boundary::fields(A& a) { io(a, tables_), io(a, constraints_), io(a, edgeLoads_), io(a, nodeLoads_); }
 
 template <class A> void Grid::fields(A& a)
 {
 	uint64_t version = formatVersion, count = blocks_.size();
 	io(a, version);
 	if (version != formatVersion)
-		throw Error("grid: the state was saved in format " + std::to_string(version) + ", this version reads format " + std::to_string(formatVersion) + ".");
+		throw Error("grid: the state was saved in format " + std::to_string(version) + ", this version reads format " + std::to_string(formatVersion) + ": the version that wrote it must load it.");
 	io(a, options_.account), io(a, options_.skip), io(a, options_.safety), io(a, count);
 	if constexpr (A::reading) {
-		if (count > a.bytes.size()) throw Error("grid: the saved state is damaged; it cannot be restored.");
-		blocks_.clear();
-		bands_.clear();
+		if (count > a.left() / (12 * 4 * sizeof(double))) damaged();
 		for (uint64_t k = 0; k < count; k++) blocks_.push_back(std::make_unique<Block>());
 	}
 	for (auto& b : blocks_) io(a, *b);
@@ -137,15 +153,13 @@ std::vector<char> Grid::save() const
 
 void Grid::restore(const std::vector<char>& state)
 {
-	const std::vector<char> before = save();
-	try {
-		Reader r { state };
-		fields(r);
-		if (r.at != state.size()) throw Error("grid: the saved state has " + std::to_string(state.size() - r.at) + " bytes too many; it cannot be restored.");
-	} catch (...) { // a damaged state must not cost the present one
-		Reader r { before };
-		fields(r);
-		throw;
-	}
+	Grid   fresh; // a damaged state must not cost the present one
+	Reader r { state };
+	fresh.fields(r);
+	if (r.at != state.size()) throw Error("grid: the saved state has " + std::to_string(state.size() - r.at) + " bytes too many; it cannot be restored.");
+	fresh.checkState();
+	fresh.boundary_.indexAll();
+	fresh.threads_ = threads_;
+	*this          = std::move(fresh);
 }
 }

@@ -2,6 +2,7 @@
 #include "map.hpp"
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <sstream>
 
 namespace mca::interface {
@@ -132,5 +133,19 @@ std::vector<Carried> makeMap(const std::vector<RowPoint>& points, const SideNode
 		out.push_back(m);
 	}
 	return out;
+}
+
+void checkRow(const std::vector<Carried>& row, int openNodes)
+{
+	const auto need = [](bool ok, int id, const char* what) {
+		if (!ok) throw Error("interface: the saved map is damaged: " + std::string(what) + " of body " + std::to_string(id) + ".");
+	};
+	std::set<int> known;
+	for (const Carried& c : row) {
+		need(c.id >= 0 && known.insert(c.id).second, c.id, "the number");
+		need(c.a >= 0 && c.a < openNodes && c.b >= 0 && c.b < openNodes && c.a != c.b, c.id, "a node");
+		need(c.Na >= 0 && c.Nb >= 0 && std::fabs(c.Na + c.Nb - 1.) < 1e-12, c.id, "the shares of the nodes");
+		need(std::fabs(c.rx) < 1e150 && std::fabs(c.ry) < 1e150 && c.mass > 0 && c.mass < 1e150, c.id, "place or mass");
+	}
 }
 }

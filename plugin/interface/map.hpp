@@ -47,4 +47,7 @@ struct Carried {
 /// The row on the side, in order along it. Throws Error naming bodies and distances: side not straight, row off the line, gap, overlap, full weight,
 /// unlike materials, edge length out of range, nothing there.
 MCA_API std::vector<Carried> makeMap(const std::vector<RowPoint>& points, const SideNodes& side, const MapOptions& options);
+
+/// A map that was read from a file: throws Error unless nodes are below openNodes, shares add to 1, numbers are finite and no automaton stands there twice.
+MCA_API void checkRow(const std::vector<Carried>& row, int openNodes);
 }

@@ -10,6 +10,13 @@ class Scene;
 
 /// Material McaMat and shape Sphere.
 bool isAutomaton(const shared_ptr<Body>& b);
+/// Throws unless every body has the number of its place, as YADE gives it: numbers are used as indices.
+void checkNumbers(const Scene& scene);
+/// Throws mca::Error: what McaEngine cannot take over of a body.
+[[noreturn]] void refuseBody(const Body& b, const string& what);
+/// Throws mca::Error unless McaEngine can take over the motion of a body: finite, in the plane.
+void   checkMotion(const Body& b);
+string numberText(Real v);
 
 /// All automata of the scene, ascending ids. Strengths that are zero are drawn and stored in the states.
 struct McaBodies {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // McaDensity: the order of a step, checks of its results.
 #include "McaDensity.hpp"
-#include <automata/volume_filter.hpp>
 #include "McaBodies.hpp"
 #include "McaCast.hpp"
 #include "McaGuarded.hpp"
+#include <kernels/automaton/filter.hpp>
+#include <kernels/automaton/limit.hpp>
 #include <core/Scene.hpp>
 #include <pkg/common/Sphere.hpp>
 
@@ -12,12 +13,10 @@ namespace yade {
 YADE_PLUGIN((McaDensity));
 
 namespace automata = mca::automata;
-using automata::nLinks;
-
-Real McaDensity::distance(const Row& r, const Side& s) const
+Real McaDensity::distance2(const Row& r, const Side& s) const
 {
 	const auto &a = r.state->se3.position, &b = rows[size_t(s.other)].state->se3.position;
-	return std::sqrt(mca::sqr(b[0] - a[0]) + mca::sqr(b[1] - a[1]));
+	return mca::sqr(b[0] - a[0]) + mca::sqr(b[1] - a[1]);
 }
 
 void McaDensity::overlapError(const Row& r, const Side& s, Real ratio) const
@@ -42,11 +41,8 @@ void McaDensity::checkResults()
 	};
 	for (auto& r : rows)
 		if (meets(r)) pressed = std::max(pressed, r.stiff * r.material->eos.rho0);
-	for (auto& r : rows) {
-		const Real  cP = std::sqrt(meets(r) ? 0.5 * (r.stiff + std::max(r.stiff, pressed / r.material->eos.rho0)) : r.stiff);
-		const auto& q  = r.material->viscosity;
-		r.limit        = mca::stableStep(r.d, cP, r.material->cS() * std::sqrt(std::max(r.m->volumeRatio, Real(1))), q.active() ? q.linear + q.quadratic * r.closing / cP : 0.);
-	}
+	for (auto& r : rows)
+		r.limit = mca::stepLimit(*r.material, r.d, r.stiff, meets(r) ? pressed : 0., r.closing, r.m->volumeRatio);
 	for (auto& r : rows) {
 		if (r.bad) {
 			std::ostringstream o;
@@ -55,10 +51,10 @@ void McaDensity::checkResults()
 		}
 		clamped += r.clampedNow;
 		deepest = std::min(deepest, std::sqrt(std::min(r.nearestLink, r.nearestContact)));
-		if (r.nearestContact < 0.25)
+		if (r.nearestContact < mca::deepestContact)
 			for (int c = r.firstContact; c < r.lastContact; c++)
 				if (mca::sqr(distance(r, contacts[size_t(c)]) / contacts[size_t(c)].p->rest[contacts[size_t(c)].side]) <= r.nearestContact * 1.0001) overlapError(r, contacts[size_t(c)], std::sqrt(r.nearestContact));
-		if (r.nearestLink < 0.04)
+		if (r.nearestLink < mca::deepestLink)
 			for (const Side& s : r.link)
 				if (s.p && mca::sqr(distance(r, s) / s.p->d) <= r.nearestLink * 1.0001) overlapError(r, s, std::sqrt(r.nearestLink));
 		if (r.limit < limit) limit = r.limit, stiffest = r.id;
@@ -66,7 +62,7 @@ void McaDensity::checkResults()
 		for (int c = r.firstContact; c < r.lastContact; c++)
 			speed2 = std::max(speed2, (rows[size_t(contacts[size_t(c)].other)].state->vel - r.state->vel).squaredNorm());
 	}
-	if (speed2 > 0) limit = std::min(limit, 0.125 * dMin / std::sqrt(speed2)); // pairs that meet: no more than an eighth of their distance in a step
+	if (speed2 > 0) limit = std::min(limit, mca::stepLimitOfContacts(dMin, speed2));
 	dtLimit = limit;
 }
 
@@ -84,11 +80,11 @@ void McaDensity::step()
 	for (Row& r : rows)
 		lastMotion(r);
 	if (doneAt != scene->iter) {
-		if (steps % automata::breakPeriod == 0) breakLinks();
+		if (steps % mca::breakPeriod == 0) breakLinks();
 		findContacts(scene);
 		settleVolumes(scene->trackEnergy);
 		filterTime += lastMove;
-		if (volumeFilter > 0 && rule() == mca::VolumeRule::affine && steps % automata::filterPeriod == 0) filterVolumes(scene->trackEnergy);
+		if (volumeFilter > 0 && rule() == mca::VolumeRule::affine && steps % mca::filterPeriod == 0) filterVolumes(scene->trackEnergy);
 		const long n = long(rows.size());
 #pragma omp parallel for schedule(static)
 		for (long i = 0; i < n; i++)
@@ -110,6 +106,7 @@ void McaDensity::step()
 				plastic += r.plastic, coupling += r.coupling, frictional += r.friction, heated += r.heated;
 	}
 	if (scene->dt > 0 && scene->dt <= dtLimit && std::isfinite(scene->dt)) return;
+	if (scene->dt > dtLimit && shortenStep(scene, dtLimit)) return;
 	std::ostringstream o;
 	if (scene->dt > dtLimit) o << "McaDensity: O.dt = " << scene->dt << " s is above the largest stable step " << dtLimit << " s of body " << stiffest;
 	else o << "McaDensity: O.dt = " << scene->dt << " s must be finite and above zero; the largest stable step is " << dtLimit << " s";
@@ -131,8 +128,7 @@ void McaDensity::prepare(Scene* scene)
 		known |= done;
 		if (done && !never) continue;
 		const auto m = static_cast<McaMat*>(b->material.get())->toMaterial();
-		const Real J = done ? s->volumeRatio : 1., d = 2. * static_cast<Sphere*>(b->shape.get())->radius * std::min(Real(1), J);
-		const Real t = mca::stableStep(d, mca::longitudinalSpeed(m.eos, m.G, J - 1.), m.cS(), m.viscosity.linear);
+		const Real J = done ? s->volumeRatio : 1., t = mca::stepLimitAtRest(m, 2. * static_cast<Sphere*>(b->shape.get())->radius, J);
 		if (t < limit) limit = t, who = b->id;
 	}
 	if (!known) dtLimit = std::numeric_limits<Real>::infinity(); // of another scene

@@ -80,7 +80,7 @@ public:
 		McaLawState*         l        = nullptr;
 		const mca::Material* material = nullptr;
 		Real                 d        = 0; ///< diameter [m]
-		Side                 link[6];
+		Side                 link[mca::nLinks];
 		int                  firstContact = 0, lastContact = 0; ///< in contacts, ascending ids
 		Real                 curvature = 0;                     ///< second difference of the volume
 		Vector3r             motion = Vector3r::Zero(); ///< velocity [m/s] and spin [rad/s] of the last move
@@ -126,18 +126,21 @@ private:
 	void                       findContacts(Scene*);
 	bool                       breaks(const Row&, int k) const;
 	void                       breakLinks();
-	Real                       linkDeterminant(const Row&) const;
+	Real                       determinantNow(const Row&) const;
 	void                       keepVolume(int i, Real J);
 	void                       settleVolumes(bool account);
-	Real                       distance(const Row&, const Side&) const;
+	Real                       distance2(const Row&, const Side&) const;
+	Real                       distance(const Row& r, const Side& s) const { return std::sqrt(distance2(r, s)); }
 	void                       contactVolume(Row&);
 	void                       filterVolumes(bool account);
 	void                       volume(Row&, bool withContacts);
+	template <mca::EosKind law> void volumeBy(Row&, bool withContacts);
 	void                       stress(Row&);
-	void                       contactFriction(Row&);
+	void                       contactFriction(Row&, const Side&, mca::Pair<Real> before, Real scale);
+	void                       scaleStresses(const Row&, Real ratio);
 	void                       checkResults();
 	[[noreturn]] void          overlapError(const Row&, const Side&, Real ratio) const;
-	Real                       stateEnergy(const Row&, Real J) const;
+	Real                       coldEnergyAt(const Row&, Real J) const;
 	void                       stateEnergies(Scene&, Real& volumetric, Real& deviatoric, Real& kinetic, Real& centre) const;
 	void                       bookEnergies(Scene*);
 	void                       refuseWhileRunning(const char* what) const;

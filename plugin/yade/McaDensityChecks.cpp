@@ -124,7 +124,7 @@ void McaDensity::checkState(const Row& r) const
 	}
 	if (r.d != l.diameter) refuse("body ", r.id, ": radius was ", 0.5 * l.diameter, " m when it was taken in and is now ", 0.5 * r.d, "; links keep their rest distance. Set it back, or erase the body and add another.");
 	// heavier is slower, lighter would be beyond the stable step
-	const Real rho = r.material->eos.rho0, least = 0.999 * l.cell * rho, most = 2. * rho * mca::Lattice<2>::cell(r.d);
+	const Real rho = r.material->eos.rho0, least = 0.999 * l.cell * rho, most = 2. * rho * mca::Lattice::cell(r.d);
 	if (!(m.mass >= least && m.mass <= most))
 		refuse("body ", r.id, ": mass ", m.mass, " kg/m must be from ", l.cell * rho, " (density times the area it stands for) to ", most, " (two full cells); a lighter one is not stable at the step that its links allow.");
 	if (!(m.blockedDOFs & State::DOF_RZ) && !(m.inertia[2] > 0 && std::isfinite(m.inertia[2]))) refuse("body ", r.id, ": inertia ", m.inertia[2], " kg m must be finite and above zero, or block the rotation.");

@@ -10,7 +10,7 @@
 
 namespace yade {
 namespace automata = mca::automata;
-using automata::nLinks;
+using mca::nLinks;
 
 namespace {
 	std::atomic<long> revisions { 0 }; // of the materials, one count for all engines: pairs outlive them
@@ -24,7 +24,7 @@ namespace {
 		auto*      p = castTo<McaPhys>(I->phys.get());
 		if (p) {
 			p->linked = true, p->active = false;
-			p->slot = I->getId1() == id ? k : (k + 3) % nLinks;
+			p->slot = I->getId1() == id ? k : mca::Lattice::opposite(k);
 			p->half = half;
 			return;
 		}
@@ -103,18 +103,18 @@ void McaDensity::takeIn(Scene* scene)
 		auto&       l = *r.l;
 		vector<int> partner(nLinks, -1);
 		for (int k = 0; k < nLinks; k++)
-			if ((S.flags[i] >> (automata::hadShift + k)) & 1) partner[size_t(k)] = S.id[S.neighbour[automata::linkSlot(i, k)]];
+			if (mca::hasHeld(S.flags[i], k)) partner[size_t(k)] = S.id[S.neighbour[automata::linkSlot(i, k)]];
 		if (!fresh && !sameLinks(l, S.flags[i], partner)) relinked.push_back(id);
 		l.flags = S.flags[i], l.partner = partner;
 		if (!fresh) continue;
-		l.cell = S.cell[i], l.invN = S.invN[i], l.rest = S.rest[i], l.offset = S.jOff[i], l.rule = int(o.volumeRule), l.diameter = r.d;
+		l.cell = S.cell[i], l.invN = S.invN[i], l.rest = S.rest[i], l.offset = S.factor[i], l.rule = int(o.volumeRule), l.diameter = r.d;
 		r.m->volumeRatio = S.J[i], r.m->pressure = S.P[i];
 	}
 	McaPhys::linking = true;
 	try {
 		for (const Row& r : rows)
 			for (int k = 0; k < nLinks; k++)
-				if (((r.l->flags >> k) & 1) && r.l->partner[size_t(k)] > r.id) makeLink(*scene, r.id, r.l->partner[size_t(k)], k, (r.l->flags >> (automata::halfShift + k)) & 1);
+				if (mca::holds(r.l->flags, k) && r.l->partner[size_t(k)] > r.id) makeLink(*scene, r.id, r.l->partner[size_t(k)], k, mca::linkWeight(r.l->flags, k) < 1.);
 	} catch (...) { // they stay new
 		McaPhys::linking = false;
 		for (int id : newcomers)
@@ -127,6 +127,7 @@ void McaDensity::takeIn(Scene* scene)
 void McaDensity::gather(Scene* scene)
 {
 	const auto& bodies = scene->bodies->body;
+	checkNumbers(*scene);
 	rows.clear();
 	place.assign(bodies.size(), -1);
 	bool      fresh = false, old = false;
@@ -177,7 +178,7 @@ void McaDensity::readMaterials(Scene* scene)
 	}
 	bool same = all == known;
 	for (size_t i = 0; same && i < all.size(); i++)
-		same = mca::automata::samePairs(constants[i], materials[i]);
+		same = mca::samePairs(constants[i], materials[i]);
 	if (!same) revision = ++revisions;
 	known = all, materials = constants;
 	for (size_t i = 0; i < rows.size(); i++)
@@ -191,9 +192,10 @@ void McaDensity::pairConstants(const Row& r, const Side& s) const
 	const Row &a = s.side ? rows[size_t(s.other)] : r, &b = s.side ? r : rows[size_t(s.other)];
 	if (p.revision == revision && p.madeOf[0] == a.mat && p.madeOf[1] == b.mat) return;
 	p.revision = revision, p.madeOf[0] = a.mat, p.madeOf[1] = b.mat;
-	p.twoG     = automata::seriesTwoG(a.material->G, b.material->G, p.share);
-	p.friction = std::min(a.material->friction, b.material->friction);
-	automata::pairViscosity(*a.material, *b.material, p.viscLinear, p.viscQuadratic);
+	p.twoG       = mca::seriesTwoG(a.material->G, b.material->G, p.share);
+	p.friction   = std::min(a.material->friction, b.material->friction);
+	const auto v = mca::viscosityOf(*a.material, *b.material);
+	p.viscLinear = v.linear, p.viscQuadratic = v.quadratic;
 }
 
 void McaDensity::findLinks(Scene* scene)
@@ -205,12 +207,12 @@ void McaDensity::findLinks(Scene* scene)
 			// InteractionLoop aborts where a functor has its materials the other way round: Ip2_FrictMat_McaMat_McaPhys wants the automaton second
 			if (!I->phys && !I->geom && place[size_t(id)] < 0 && I->getId1() == r.id) I->swapOrder();
 			if (!p || !p->linked || place[size_t(id)] < 0) continue;
-			const int side = I->getId1() == r.id ? 0 : 1, k = side ? (p->slot + 3) % nLinks : p->slot;
+			const int side = I->getId1() == r.id ? 0 : 1, k = side ? mca::Lattice::opposite(p->slot) : p->slot;
 			r.link[k]      = { p, side, place[size_t(id)] };
 			pairConstants(r, r.link[k]);
 			found |= 1 << k;
 		}
-		const int missing = (r.l->flags & automata::linkBits) & ~found;
+		const int missing = (r.l->flags & mca::linkBits) & ~found;
 		if (!missing) continue;
 		for (int k = 0; k < nLinks; k++) {
 			const int other = r.l->partner[size_t(k)];
@@ -220,7 +222,7 @@ void McaDensity::findLinks(Scene* scene)
 				                 + ". Something has erased it (O.interactions.clear?); load the last saved state.");
 			if (other >= 0 && size_t(other) < place.size() && scene->bodies->body[size_t(other)])
 				throw mca::Error("body " + std::to_string(other) + " is linked to automaton " + std::to_string(r.id) + " but is no automaton any more; give it back its McaMat, Sphere and state, or erase it.");
-			r.l->flags = (r.l->flags & ~((1 << k) | (1 << (automata::halfShift + k)) | (1 << (automata::hadShift + k)))) | automata::exposedBit; // its partner was erased
+			r.l->flags = (r.l->flags & ~mca::slotBits(k)) | mca::exposedBit; // its partner was erased
 			r.l->partner[size_t(k)] = -1;
 			relinked.push_back(r.id);
 		}

@@ -141,22 +141,6 @@ void McaEngine::prepare(Scene* scene)
 	});
 }
 
-// Breaking links and first contacts can halve the stable step at once. Nothing has moved yet, so a time stepper that comes before this engine may
-// still choose a shorter one, unless something between the two has already used the longer.
-bool McaEngine::shortenStep(Scene* scene, Real limit) const
-{
-	McaTimeStepper* stepper = nullptr;
-	for (const auto& e : scene->engines) {
-		if (e.get() == this) break;
-		if (e->dead) continue;
-		if (auto* t = dynamic_cast<McaTimeStepper*>(e.get())) stepper = t->active ? t : nullptr;
-		else if (dynamic_cast<McaGridEngine*>(e.get()) || e->getClassName() == "NewtonIntegrator") stepper = nullptr;
-	}
-	if (!stepper) return false;
-	stepper->shorten(scene, limit, getClassName() + (label.empty() ? "" : " " + label));
-	return true;
-}
-
 void McaEngine::checkStep(Scene* scene) const
 {
 	const Real limit = solver->criticalStep();

@@ -30,6 +30,8 @@ public:
 	void integrate(Scene* scene);
 	void finish(Scene* scene);
 	mca::automata::Solver& automata() { return *solver; }
+	/// ensureBuilt() where a script asks: only in a scene that has this engine and where something may have changed.
+	void refresh(Scene* scene);
 	/// The solver holds what the bodies hold: gathers them the first time, later takes over what scripts have changed. Throws mca::Error.
 	void ensureBuilt(Scene* scene);
 
@@ -37,6 +39,7 @@ public:
 	void       writeBack();
 	void       reload();
 	py::object fieldByName(const string& name);
+	py::dict   fieldsByName(py::object names);
 	py::object identifiers();
 	py::dict   energies();
 	py::dict   countersNow();
@@ -56,8 +59,8 @@ public:
 		"Bodies with different masks do not link at the start; they meet as contacts. Blocked degrees of freedom keep their velocity. Walls, boxes, facets and clumps are refused (the law in YADE's own loop has them).",
 		((string, volumeRule, "affine", , "'affine' (default: J = det F of the links, exact in any homogeneous deformation), 'inversePower' (density from the mean of (d/r)^2) or 'meanDistance' (as published; its lattice buckles under strong plastic compression). Read when bodies are gathered; a later change is refused"))
 		((Real, linkFactor, 1.2, , "bodies closer than this many diameters are linked at the start [-], 1.02 ... 1.5. Read when bodies are gathered; a later change is refused"))
-		((Real, skin, 0.4, , "range of the contact search beyond touching, in diameters [-], 0.05 ... 1. Read at the start of a run and after every look"))
-		((Real, volumeFilter, 0.1, , "rate at which stripes of volume (alternate rows) fade in flowing material, in c0/d [-]; 0 ... 1, 0: off. They cost no force, so nothing else takes them away; affine rule. Read as skin"))
+		((Real, skin, 0.4, , "range of the contact search beyond touching, in diameters [-], 0.05 ... 1. Read at every look"))
+		((Real, volumeFilter, 0.1, , "rate at which stripes of volume (alternate rows) fade in flowing material, in c0/d [-]; 0 ... 1, 0: off. They cost no force, so nothing else takes them away; affine rule. Read at every look"))
 		((bool, sleeping, true, , "leave out regions that nothing has reached; changes no result. Read when bodies are gathered; a later change is refused"))
 		((bool, contacts, true, , "search for contacts. Read when bodies are gathered; a later change is refused"))
 		((bool, account, false, , "keep the energy account (also on when O.trackEnergy). Read in every step"))
@@ -78,7 +81,8 @@ public:
 		,
 		.def("sync", &McaEngine::writeBack, "Write positions, velocities and states to the bodies of its scene now. Needed only while the loop runs in the background; at any other time they are up to date. Raises RuntimeError when its scene is gone.")
 		.def("reload", &McaEngine::reload, "Take over in the next step what the script has changed in the bodies while the loop runs in the background; at any other time that happens by itself. Raises RuntimeError when its scene is gone.")
-		.def("field", &McaEngine::fieldByName, (py::arg("name")), "Copy of one quantity of all automata in the order of `ids`, numpy (N,): 'x', 'y' [m], 'vx', 'vy' [m/s], 'omega' [rad/s], 'angle' [rad], 'mass' [kg/m], 'pressure' [Pa], 'volumeRatio' [-], 'equivalentStress' [Pa], 'plasticStrain' [-], 'temperature' [K], 'stressZZ' [Pa], 'fx', 'fy' [N/m], 'links' [-], 'brokenLinks' [-], 'strength' [-], 'diameter' [m], 'weight' [-], 'material' [-].")
+		.def("field", &McaEngine::fieldByName, (py::arg("name")), "Copy of one quantity of all automata now, in the order of `ids`, numpy (N,): 'x', 'y' [m], 'vx', 'vy' [m/s], 'omega' [rad/s], 'angle' [rad], 'mass' [kg/m], 'pressure' [Pa], 'volumeRatio' [-], 'equivalentStress' [Pa], 'plasticStrain' [-], 'temperature' [K], 'stressZZ' [Pa], 'fx', 'fy' [N/m], 'links' [-], 'brokenLinks' [-], 'strength' [-], 'diameter' [m], 'weight' [-], 'material' [-]. What a script has changed in the bodies counts already. Raises RuntimeError for another name.")
+		.def("fields", &McaEngine::fieldsByName, (py::arg("names")), "Copies of several quantities of one moment, dict of name -> numpy (N,) in the order of `ids`; names: a list of those that field() takes, and 'ids' (int). Bodies and engine are compared once, not once for each name. Raises RuntimeError for another name, TypeError when names is no list or tuple of texts.")
 		.add_property("ids", &McaEngine::identifiers, "Ids of the bodies, ascending; numpy (N,) int.")
 		.def("energies", &McaEngine::energies, "Energies [J/m] now; dissipations since the start when the account is kept. 'bookedError': kinetic energy minus all work booked (round-off); 'halfStep': what 'kinetic', 'external' and 'viscous' change in the half step between the stresses and the velocities; 'total': independent sum at the time of the stresses.")
 		.def("counters", &McaEngine::countersNow, "Work done so far: steps, searches, sorts, blockSteps (blocks of 64 computed), blocks, brokenLinks, clamped (equation of state beyond its clamp), deepest (smallest distance / rest distance), contacts, awake.")
@@ -93,8 +97,19 @@ public:
 private:
 	/// What a body held when body and engine were last the same.
 	struct Same {
-		Vector3r pos, vel;
-		Real     spin, angle, plasticStrain, temperature, pressure, volumeRatio;
+		shared_ptr<State> state;
+		shared_ptr<Shape> shape;
+		const Material*   material = nullptr; ///< one of known
+		// written by the engine
+		Vector3r    pos = Vector3r::Zero(), vel = Vector3r::Zero(), angVel = Vector3r::Zero();
+		Quaternionr ori = Quaternionr::Identity();
+		Real        angle = NaN; ///< of ori, as the solver has it
+		Real        pressure = 0, volumeRatio = 1, equivalentStress = 0, plasticStrain = 0, temperature = 0, stressZZ = 0, dissipated = 0;
+		int         links = 0, brokenLinks = 0;
+		// read only
+		Real     mass = 0, inertia = 0, radius = 0, strength = 0;
+		int      mask = 0;
+		unsigned blocked = 0;
 	};
 	shared_ptr<mca::automata::Solver> solver;
 	boost::weak_ptr<Scene>            home;     ///< scene of its bodies
@@ -108,7 +123,7 @@ private:
 	mutable bool warnedGravity = false;
 	int  energyIndex[12] = { -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1 };
 
-	// bodies (McaEngineBodies.cpp)
+	// bodies (McaEngineBodies.cpp, McaEngineChanges.cpp)
 	struct Change;
 	bool              standsIn(const Scene& scene) const; ///< in its O.engines
 	shared_ptr<Scene> myScene(const char* call) const;
@@ -117,21 +132,25 @@ private:
 	void              gather(Scene* scene);
 	void              bind(Scene* scene);
 	void              adoptChanges(Scene* scene);
-	vector<Change>    changes(bool& rebuild) const;
+	vector<Change>    changes(bool& rebuild);
+	Change            changeOf(size_t q, bool& rebuild);
+	bool              untouched(size_t q) const;
 	bool              sameBodies(const Scene& scene) const;
 	bool              sameMaterials() const;
 	void              apply(const vector<Change>& list);
 	void              writeBodies(Scene* scene);
 	void              writeEnergies(Scene* scene);
-	void              remember(size_t q);
+	bool              writeBody(State& s, Same& was, size_t i) const;
+	void              takeConstants(size_t q);
+	void              takeResults(size_t q);
 	// step
 	mca::automata::Options solverOptions(Scene*) const;
 	void                   takeOptions(Scene*);
 	void                   checkScene(Scene*) const;
 	void                   readExternal(Scene*);
 	void                   checkStep(Scene*) const;
-	bool                   shortenStep(Scene* scene, Real limit) const;
 	template <class F> auto read(F&& f);
+	vector<size_t>         places() const; ///< of order in the solver's arrays
 };
 REGISTER_SERIALIZABLE(McaEngine);
 } // namespace yade

@@ -57,26 +57,43 @@ void McaEngine::preSave(McaEngine&)
 	});
 }
 
+namespace {
+	/// What stands beside the solver's state must belong to it.
+	void checkLoaded(const mca::automata::Solver& solver, const vector<int>& order, const vector<Vector3r>& viscous)
+	{
+		solver.checkOrder(order);
+		for (const Vector3r& v : viscous)
+			if (!(v[0] >= 0 && v[0] < 2147483648. && v[0] == std::floor(v[0]) && v[1] >= 0 && v[2] >= 0 && std::isfinite(v[1] + v[2])))
+				throw mca::Error("McaEngine: the attribute 'viscous' in the file holds no body and coefficients of a viscous boundary; the file is damaged or was edited.");
+	}
+} // namespace
+
 void McaEngine::postLoad(McaEngine&)
 {
 	if (state.empty()) return;
 	vector<char>    bytes;
 	sdk::BlobReader in(state);
 	in.get(bytes);
+	in.end();
 	auto fresh = shared_ptr<mca::automata::Solver>(new mca::automata::Solver);
 	fresh->load(string(bytes.begin(), bytes.end()));
+	checkLoaded(*fresh, order, viscous);
 	solver = fresh;
 	home.reset(), bodies.clear(), same.clear(), known.clear();
 	looked = true, stale = false;
 	state.clear();
 }
 
+void McaEngine::refresh(Scene* scene)
+{
+	if (!solver || (looked && standsIn(*scene))) ensureBuilt(scene);
+}
+
 /// f() of the present state, under the lock; the bodies are gathered if that has not been done.
 template <class F> auto McaEngine::read(F&& f)
 {
 	return locked([&] {
-		const auto present = Omega::instance().getScene();
-		if (!solver || (looked && standsIn(*present))) ensureBuilt(present.get());
+		refresh(Omega::instance().getScene().get());
 		return f();
 	});
 }
@@ -87,36 +104,75 @@ py::object McaEngine::identifiers()
 	return sdk::arrayCopy(now.data(), { Py_ssize_t(now.size()) });
 }
 
+namespace {
+	const std::pair<const char*, vector<Real> Store::*> plain[] = { { "angle", &Store::angle }, { "diameter", &Store::diameter }, { "fx", &Store::fx }, { "fy", &Store::fy }, { "mass", &Store::mass },
+		{ "omega", &Store::omega }, { "plasticStrain", &Store::eqps }, { "pressure", &Store::P }, { "strength", &Store::strength }, { "stressZZ", &Store::szz }, { "temperature", &Store::temperature },
+		{ "volumeRatio", &Store::J }, { "vx", &Store::vx }, { "vy", &Store::vy }, { "weight", &Store::weight }, { "x", &Store::x }, { "y", &Store::y } };
+
+	int had(const Store& S, size_t i) { return __builtin_popcount((S.flags[i] >> mca::hadShift) & mca::linkBits); }
+	int have(const Store& S, size_t i) { return __builtin_popcount(S.flags[i] & mca::linkBits); }
+
+	/// One quantity of the automata at these places.
+	vector<Real> quantity(const mca::automata::Solver& solver, const vector<size_t>& places, const string& name, const string& call)
+	{
+		const Store& S    = solver.store;
+		const auto   each = [&](auto value) {
+                        vector<Real> v;
+                        v.reserve(places.size());
+                        for (size_t i : places)
+                                v.push_back(value(i));
+                        return v;
+		};
+		for (const auto& p : plain)
+			if (name == p.first) return each([&, &from = S.*p.second](size_t i) { return from[i]; });
+		if (name == "equivalentStress") return each([&](size_t i) { return solver.equivalentStress(i); });
+		if (name == "links") return each([&](size_t i) { return Real(have(S, i)); });
+		if (name == "brokenLinks") return each([&](size_t i) { return Real(had(S, i) - have(S, i)); });
+		if (name == "material") return each([&](size_t i) { return Real(S.species[size_t(S.speciesOf(i))].material); });
+		string list;
+		for (const auto& p : plain)
+			list += string(p.first) + ", ";
+		throw mca::Error("McaEngine." + call + " = '" + name + "' is unknown; it must be one of " + list + "equivalentStress, links, brokenLinks, material.");
+	}
+} // namespace
+
+vector<size_t> McaEngine::places() const
+{
+	vector<size_t> v;
+	v.reserve(order.size());
+	for (int id : order)
+		v.push_back(size_t(solver->indexOf(id)));
+	return v;
+}
+
 py::object McaEngine::fieldByName(const string& name)
 {
-	const vector<Real> out = read([&] {
-		const Store& S = solver->store;
-		const std::map<string, const vector<Real>*> plain = {
-			{ "x", &S.x }, { "y", &S.y }, { "vx", &S.vx }, { "vy", &S.vy }, { "omega", &S.omega }, { "angle", &S.angle }, { "mass", &S.mass }, { "pressure", &S.P }, { "volumeRatio", &S.J },
-			{ "plasticStrain", &S.eqps }, { "temperature", &S.temperature }, { "stressZZ", &S.szz }, { "fx", &S.fx }, { "fy", &S.fy }, { "strength", &S.strength }, { "diameter", &S.diameter }, { "weight", &S.weight }
-		};
-		const auto   had  = [&](size_t i) { return __builtin_popcount((S.flags[i] >> mca::automata::hadShift) & mca::automata::linkBits); };
-		const auto   have = [&](size_t i) { return __builtin_popcount(S.flags[i] & mca::automata::linkBits); };
-		vector<Real> v(order.size());
-		auto         fill = [&](auto value) {
-                        for (size_t q = 0; q < order.size(); q++)
-                                v[q] = value(size_t(solver->indexOf(order[q])));
-		};
-		auto it = plain.find(name);
-		if (it != plain.end()) fill([&](size_t i) { return (*it->second)[i]; });
-		else if (name == "equivalentStress") fill([&](size_t i) { return solver->equivalentStress(i); });
-		else if (name == "links") fill([&](size_t i) { return Real(have(i)); });
-		else if (name == "brokenLinks") fill([&](size_t i) { return Real(had(i) - have(i)); });
-		else if (name == "material") fill([&](size_t i) { return Real(S.species[size_t(S.speciesOf(i))].material); });
-		else {
-			string list;
-			for (auto& p : plain)
-				list += p.first + ", ";
-			throw std::runtime_error("McaEngine.field: name = '" + name + "' is unknown; it must be one of " + list + "equivalentStress, links, brokenLinks, material.");
-		}
-		return v;
-	});
+	const auto out = read([&] { return quantity(*solver, places(), name, "field: name"); });
 	return sdk::arrayCopy(out.data(), { Py_ssize_t(out.size()) });
+}
+
+py::dict McaEngine::fieldsByName(py::object names)
+{
+	vector<string> asked;
+	const bool     list = PyList_Check(names.ptr()) || PyTuple_Check(names.ptr());
+	for (long k = 0; list && k < py::len(names); k++)
+		if (const py::extract<string> text(names[k]); text.check()) asked.push_back(text());
+	if (!list || long(asked.size()) != py::len(names)) {
+		PyErr_SetString(PyExc_TypeError, "McaEngine.fields: names must be a list or tuple of texts, each a name that field() takes or 'ids'.");
+		py::throw_error_already_set();
+	}
+	vector<int>          ids;
+	vector<vector<Real>> values;
+	read([&] {
+		const auto at = places();
+		ids           = order;
+		for (const auto& name : asked)
+			values.push_back(name == "ids" ? vector<Real>() : quantity(*solver, at, name, "fields: names: name"));
+	});
+	py::dict d;
+	for (size_t k = 0; k < asked.size(); k++)
+		d[asked[k]] = asked[k] == "ids" ? sdk::arrayCopy(ids.data(), { Py_ssize_t(ids.size()) }) : sdk::arrayCopy(values[k].data(), { Py_ssize_t(values[k].size()) });
+	return d;
 }
 
 py::dict McaEngine::energies()

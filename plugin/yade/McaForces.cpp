@@ -6,21 +6,22 @@
 #include "McaGuarded.hpp"
 #include <pkg/common/Sphere.hpp>
 #include <core/Omega.hpp>
+#include <kernels/automaton/energy.hpp>
 #include <core/Scene.hpp>
 
 namespace yade {
 YADE_PLUGIN((McaForces));
 using mca::sqr;
-using mca::automata::nLinks;
+using mca::nLinks;
 
 namespace {
-	/// Force [N/m], torque about z [N], viscous share of the force [N/m] and viscous power of the links [W/m] on one body, links in the order of their slots, then the others by id.
+	/// Force [N/m], torque about z [N], viscous share of the force [N/m] and viscous heat of the links over the last move [J/m] on one body, links in the order of their slots, then the others by id.
 	struct Sum {
 		Vector3r force = Vector3r::Zero();
 		Vector2r viscous = Vector2r::Zero();
 		Real     torque = 0, linkHeat = 0;
 		bool     any = false;
-		void     add(const Body& b, const McaLawState* l)
+		void     add(const Body& b, const McaLawState* l, Real dt)
 		{
 			const McaPhys* linked[nLinks] = {};
 			Vector3r       others         = Vector3r::Zero();
@@ -32,7 +33,7 @@ namespace {
 				const int side = entry.second->getId1() == b.id ? 0 : 1;
 				viscous += side ? Vector2r(-p->viscousForce) : p->viscousForce;
 				if (p->linked && l) {
-					linked[side ? (p->slot + 3) % nLinks : p->slot] = p;
+					linked[side ? mca::Lattice::opposite(p->slot) : p->slot] = p;
 					continue;
 				}
 				others += side ? Vector3r(-p->force) : p->force;
@@ -43,7 +44,7 @@ namespace {
 				const int side = linked[k]->slot == k ? 0 : 1;
 				force += side ? Vector3r(-linked[k]->force) : linked[k]->force;
 				torque += linked[k]->torque[side];
-				linkHeat += 0.5 * linked[k]->heatRate;
+				linkHeat += 0.5 * linked[k]->heatRate * dt;
 			}
 			force += others, torque += otherTorque;
 		}
@@ -82,7 +83,7 @@ void McaDensity::addForces(Scene* scene)
 	for (long i = 0; i < n; i++)
 		if (const auto& b = bodies[size_t(i)]) {
 			auto* m = castTo<McaState>(b->state.get());
-			sums[size_t(i)].add(*b, m ? m->law.get() : nullptr);
+			sums[size_t(i)].add(*b, m ? m->law.get() : nullptr, lastMove);
 		}
 	for (long i = 0; i < n; i++) {
 		const Sum& s = sums[size_t(i)];
@@ -99,8 +100,8 @@ void McaDensity::addForces(Scene* scene)
 		const Row& r = rows[size_t(place[size_t(i)])];
 		r.l->moved   = scene->dt;
 		if (r.material->eos.heats()) { // the heat of the viscosity of links goes into the internal energy
-			r.m->dissipated += s.linkHeat * lastMove / (r.material->eos.rho0 * r.l->cell);
-			if (scene->trackEnergy) heated += s.linkHeat * lastMove;
+			r.m->dissipated += s.linkHeat * (1. / r.material->eos.rho0) / r.l->cell;
+			if (scene->trackEnergy) heated += s.linkHeat;
 		}
 	}
 	if (scene->trackEnergy) {
@@ -115,7 +116,7 @@ void McaDensity::addForces(Scene* scene)
 	scene->forces.sync();
 	for (const Row& r : rows) {
 		members.push_back(r.id);
-		r.m->links = __builtin_popcount(r.l->flags & mca::automata::linkBits);
+		r.m->links = mca::linkCount(r.l->flags);
 		const State&    s = *r.state;
 		const Vector3r &f = scene->forces.getForce(r.id), &t = scene->forces.getTorque(r.id);
 		const auto      free = [&](unsigned dof) { return s.blockedDOFs & dof ? 0. : scene->dt; };
@@ -143,21 +144,19 @@ void McaDensity::stateEnergies(Scene& scene, Real& volumetric, Real& deviatoric,
 		if (it == seen.end()) seen.push_back(mat), constants.push_back(mat->toMaterial()), it = seen.end() - 1;
 		const auto& c = constants[size_t(it - seen.begin())];
 		const auto& l = *m->law;
-		volumetric += c.eos.heats() ? l.cell * c.eos.rho0 * m->dissipated : l.cell * mca::storedEnergy(c.eos, m->volumeRatio - 1.);
-		if (l.rule == int(mca::VolumeRule::affine) && l.offset > 0) volumetric += l.cell * mca::storedEnergy(c.eos, 1. / (1. + l.contactSum / nLinks) - 1.);
+		volumetric += mca::volumeEnergy(c, l.cell, m->volumeRatio, m->dissipated);
+		if (l.rule == int(mca::VolumeRule::affine) && l.offset > 0) volumetric += mca::coldEnergy(c, l.cell, mca::contactRatio(l.contactSum)); // contacts have a volume of their own
 		kinetic += 0.5 * (m->mass * m->vel.squaredNorm() + m->inertia[2] * sqr(m->angVel[2]));
 		centre += 0.5 * m->mass * (meanVelocity(scene, b->id, *m, -0.5).squaredNorm() - m->vel.squaredNorm());
 		if (!(m->blockedDOFs & State::DOF_RZ) && m->inertia[2] > 0) centre += 0.5 * m->inertia[2] * (sqr(m->angVel[2] - 0.5 * scene.dt * scene.forces.getTorque(b->id)[2] / m->inertia[2]) - sqr(m->angVel[2]));
-		if (!(c.G > 0)) continue;
-		Real pairs = 0; // with the stiffness of the pair, which between unlike materials is neither's own; stresses stand times J
+		Real pairs = 0;
 		for (const auto& entry : b->intrs) {
 			const auto* p = castTo<const McaPhys>(entry.second->phys.get());
 			if (!p || p->wall) continue;
 			const int side = entry.second->getId1() == b->id ? 0 : 1;
-			if (p->twoG > 0) pairs += (p->linked && p->half ? 0.5 : 1.) * (sqr(p->s[side]) + sqr(p->tau[side])) / (p->twoG * m->volumeRatio);
+			pairs += (p->linked && p->half ? 0.5 : 1.) * mca::pairEnergy(p->s[side], p->tau[side], m->volumeRatio, p->twoG);
 		}
-		const Real share = mca::Lattice<2>::cell(2. * static_cast<Sphere*>(b->shape.get())->radius) / nLinks; // of volume, of each pair
-		deviatoric += share * (pairs + m->volumeRatio * sqr(m->stressZZ) / (4. * c.G * l.invN));
+		deviatoric += mca::deviatorEnergy(c.G, l.diameter, pairs, m->volumeRatio, m->stressZZ, l.invN);
 	}
 	volumetric -= heated;
 }

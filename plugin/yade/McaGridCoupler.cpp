@@ -80,7 +80,7 @@ vector<RowPoint> McaGridCoupler::candidates(Scene* scene, vector<mca::Material>&
                 const Vector3r& x = at ? (*at)[0] : b.state->se3.position;
                 RowPoint        p;
                 p.id = b.id, p.x = x[0], p.y = x[1], p.diameter = 2. * sphere->radius, p.mass = b.state->mass;
-                p.weight = p.mass / (b.material->density * mca::Lattice<2>::cell(p.diameter));
+                p.weight = p.mass / (b.material->density * mca::Lattice::cell(p.diameter));
                 if (m) {
                         const auto it = known.emplace(m, keep.size());
                         if (it.second) keep.push_back(m->toMaterial());
@@ -178,11 +178,7 @@ void McaGridCoupler::checkHome(Scene* scene)
 	const auto now = home.lock();
 	if (now.get() == scene) return;
 	if (!loaded) throw mca::Error("McaGridCoupler: it has tied bodies of another scene (O.reset, O.load, ...); take the coupler of the present scene from O.engines, or make new couplers and a new grid.");
-	for (const Carried& c : row) {
-		const bool there = foundAutomata ? foundAutomata->automata().indexOf(c.id) >= 0 : scene->bodies->exists(c.id);
-		if (!there || c.a < 0 || c.b < 0 || c.a >= int(foundGrid->grid().open().size()) || c.b >= int(foundGrid->grid().open().size()))
-			throw mca::Error("McaGridCoupler: the saved row holds body " + std::to_string(c.id) + " on nodes " + std::to_string(c.a) + " and " + std::to_string(c.b) + ", which the saved scene does not have; the file is damaged or was changed.");
-	}
+	inBoth([&] { checkTied(scene); });
 	loaded = false;
 	home   = Omega::instance().getScene();
 }
@@ -211,6 +207,21 @@ void McaGridCoupler::prepare(Scene* scene)
 	}
 	for (auto* c : couplers)
 		if (!c->tied) c->inBoth([&] { c->tieRow(scene); });
+}
+
+// The row of a loaded scene against what it refers to.
+void McaGridCoupler::checkTied(Scene* scene)
+{
+	const auto refuse = [](int id, const char* what) { throw mca::Error("McaGridCoupler: the saved row does not belong to this scene: body " + std::to_string(id) + " " + what + "."); };
+	mca::interface::checkRow(row, foundGrid->grid().open().size());
+	if (foundAutomata) foundAutomata->ensureBuilt(scene);
+	if (foundAutomata && places.size() != row.size()) refuse(row.front().id, "has no place among the tied automata");
+	for (size_t k = 0; k < row.size(); k++) {
+		const int id = row[k].id;
+		if (size_t(id) >= scene->bodies->body.size() || !scene->bodies->body[size_t(id)] || !scene->bodies->body[size_t(id)]->state) refuse(id, "is not there");
+		if (foundAutomata && (places[k] < 0 || !foundAutomata->automata().isTied(size_t(places[k]), id))) refuse(id, "is not tied");
+	}
+	loaded = false;
 }
 
 void McaGridCoupler::forcesToNodes(Scene* scene)
@@ -310,6 +321,8 @@ void McaGridCoupler::postLoad(McaGridCoupler&)
 	sdk::BlobReader in(state);
 	in.get(row);
 	in.get(places);
+	in.end();
+	mca::interface::checkRow(row, std::numeric_limits<int>::max()); // against the grid: when it is used
 	tied = loaded = !row.empty();
 	home.reset();
 	state.clear();
@@ -346,6 +359,7 @@ py::dict McaGridCoupler::energies()
 		c->prepare(now);
 		c->inBoth([&] {
 		if (c->foundAutomata && done.insert(c->foundAutomata.get()).second) {
+			c->foundAutomata->refresh(now); // what a script has changed counts already
 			const auto a = c->foundAutomata->automata().account();
 			kinetic += a.kinetic, total += a.total(), booked += a.bookedError(), px += a.px, py_ += a.py, jx += a.impulseX, jy += a.impulseY, turn += a.angular;
 		}

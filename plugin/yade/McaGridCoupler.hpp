@@ -31,16 +31,16 @@ public:
 		"Order of engines: :yref:`McaTimeStepper`, :yref:`McaEngine`, :yref:`McaGridEngine`, couplers. Without McaEngine the row is taken from O.bodies, which Law2 and NewtonIntegrator move: "
 		"InteractionLoop, McaGridEngine, couplers, NewtonIntegrator. "
 		"A row off the line, gaps, overlaps, whole automata on the line, unlike materials and edges of another size are errors before the first step.",
-		((shared_ptr<McaEngine>, automata, , , "automata; empty: the only McaEngine of the scene, or O.bodies when there is none"))
-		((shared_ptr<McaGridEngine>, grid, , , "grid; empty: the only McaGridEngine of the scene"))
-		((int, block, 0, , "number of the block"))
-		((string, side, "left", , "side of the block: 'bottom', 'right', 'top' or 'left'"))
-		((int, start, 0, , "first node of the side"))
-		((int, end, -1, , "last node of the side, inclusive; -1: the last there is"))
-		((vector<int>, ids, , , "bodies of the row in any order; empty: all automata on the line"))
-		((Real, tolerance, 1e-4, , "allowed distance from the line, over the diameter [-]"))
-		((Vector2r, ratio, Vector2r(0.5, 4.5), , "smallest and largest edge of the grid on the interface, over the diameter [-]"))
-		((bool, otherMaterials, false, , "allow unlike materials on the two sides"))
+		((shared_ptr<McaEngine>, automata, , , "automata; empty: the only McaEngine of the scene, or O.bodies when there is none; read when the row is tied, a later change is refused"))
+		((shared_ptr<McaGridEngine>, grid, , , "grid; empty: the only McaGridEngine of the scene; read when the row is tied, a later change is refused"))
+		((int, block, 0, , "number of the block; read when the row is tied, a later change is refused"))
+		((string, side, "left", , "side of the block: 'bottom', 'right', 'top' or 'left'; read when the row is tied, a later change is refused"))
+		((int, start, 0, , "first node of the side; read when the row is tied, a later change is refused"))
+		((int, end, -1, , "last node of the side, inclusive; -1: the last there is; read when the row is tied, a later change is refused"))
+		((vector<int>, ids, , , "bodies of the row in any order; empty: all automata on the line; read when the row is tied, a later change is refused"))
+		((Real, tolerance, 1e-4, , "allowed distance from the line, over the diameter [-]; read when the row is tied, a later change is refused"))
+		((Vector2r, ratio, Vector2r(0.5, 4.5), , "smallest and largest edge of the grid on the interface, over the diameter [-]; read when the row is tied, a later change is refused"))
+		((bool, otherMaterials, false, , "allow unlike materials on the two sides; read when the row is tied, a later change is refused"))
 		((sdk::Blob, state, , Attr::hidden, "the map"))
 		((string, tiedAs, "", Attr::hidden, "the attributes with which the row was tied"))
 		,
@@ -57,7 +57,8 @@ public:
 private:
 	vector<mca::interface::Carried> row;
 	vector<long>                    places; ///< of each in the solver's order of tied automata
-	bool                            tied = false, loaded = false;
+	bool                            tied = false;
+	bool                            loaded = false; ///< from a file and not yet compared with what it refers to
 	boost::weak_ptr<Scene>          home; ///< scene of the tied bodies
 	shared_ptr<McaEngine>           foundAutomata;
 	shared_ptr<McaGridEngine>       foundGrid;
@@ -68,6 +69,7 @@ private:
 	template <class F> void         inBoth(F&& f);
 	void                            makeRow(Scene*);
 	void                            tieRow(Scene*);
+	void                            checkTied(Scene*);
 	vector<mca::interface::RowPoint> candidates(Scene*, vector<mca::Material>& keep) const;
 	void                            forcesToNodes(Scene*);
 	void                            motionToRow(Scene*, bool positions);

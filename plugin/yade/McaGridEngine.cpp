@@ -74,6 +74,7 @@ void McaGridEngine::postLoad(McaGridEngine&)
 	vector<char>    bytes;
 	sdk::BlobReader in(state);
 	in.get(bytes);
+	in.end();
 	auto fresh = shared_ptr<mca::grid::Grid>(new mca::grid::Grid());
 	fresh->restore(bytes);
 	solver = fresh;
@@ -83,9 +84,11 @@ void McaGridEngine::postLoad(McaGridEngine&)
 
 long McaGridEngine::cellCount() const
 {
-	long n = 0;
-	for (int b = 0; solver && b < solver->blocks(); b++)
-		n += long(solver->block(b).ni) * solver->block(b).nj;
-	return n;
+	return locked([&] {
+		long n = 0;
+		for (int b = 0; solver && b < solver->blocks(); b++)
+			n += long(solver->block(b).ni) * solver->block(b).nj;
+		return n;
+	});
 }
 } // namespace yade

@@ -58,9 +58,18 @@ public:
 	{
 		return locked([&] { return grid().criticalCell(); });
 	}
-	Real       awake() const { return solver ? solver->awakeFraction() : 0.; }
-	Real       time() const { return solver ? solver->time() : 0.; }
-	long       steps() const { return solver ? solver->steps() : 0; }
+	Real awake() const
+	{
+		return locked([&] { return solver ? solver->awakeFraction() : 0.; });
+	}
+	Real time() const
+	{
+		return locked([&] { return solver ? solver->time() : 0.; });
+	}
+	long steps() const
+	{
+		return locked([&] { return solver ? solver->steps() : 0L; });
+	}
 	long       cellCount() const;
 
 	// clang-format off
@@ -69,10 +78,10 @@ public:
 		"(Caramana, Burton, Shashkov and Whalen 1998) with Wilkins' (1964) strength, Hughes-Winget rotation, Flanagan-Belytschko hourglass stiffness: energy and momentum are exact to round-off. "
 		"Add blocks first, then boundaries, velocities and gauges. Blocks whose sides touch share the nodes there. "
 		"Sides are 'bottom' (first row of nodes), 'right', 'top', 'left' (first column). A velocity, traction or force is a number or a pair (times [s], values), piecewise linear in time.",
-		((bool, account, true, , "keep internal energy, works and impulses; set before the first block"))
-		((bool, sleeping, true, , "leave out cells that nothing has reached; changes no result, bit for bit; set before the first block"))
-		((bool, adaptive, true, , "set O.dt in every step to dtFactor times the largest stable one, growing at most 10 % a step; otherwise O.dt is checked only"))
-		((Real, dtFactor, 0.6, , "share of the largest stable time step [-], 0 < dtFactor <= 1"))
+		((bool, account, true, , "keep internal energy, works and impulses; read when the first block is added, never again"))
+		((bool, sleeping, true, , "leave out cells that nothing has reached; changes no result, bit for bit; read when the first block is added, never again"))
+		((bool, adaptive, true, , "set O.dt in every step to dtFactor times the largest stable one, growing at most 10 % a step; otherwise O.dt is checked only; read in every step"))
+		((Real, dtFactor, 0.6, , "share of the largest stable time step [-], 0 < dtFactor <= 1; read in every step"))
 		((bool, carries, false, Attr::hidden, "rows of automata are tied to it"))
 		((sdk::Blob, state, , Attr::hidden, "state of the solver"))
 		,

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "McaPhys.hpp"
 #include "McaCast.hpp"
-#include "automata/solver.hpp"
+#include <kernels/automaton/force.hpp>
+#include <kernels/automaton/links.hpp>
+#include <kernels/automaton/volume.hpp>
+#include <kernels/automaton/contact.hpp>
 #include <atomic>
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
@@ -18,13 +21,11 @@ using mca::VolumeRule;
 
 bool McaPhys::linking = false;
 
-bool McaPhys::pushes(int side, Real r2) const { return r2 < mca::automata::touchShare * sqr(rest[side]) && rest[side] >= mca::automata::collapsed * d; }
+bool McaPhys::pushes(int side, Real r2) const { return mca::pushes(r2, rest[side], d) > 0.; }
 
 bool McaPhys::mayTouch(const Body& a, const McaLawState& la, const Body& b, const McaLawState& lb)
 {
-	const bool ea = la.flags & mca::automata::exposedBit, eb = lb.flags & mca::automata::exposedBit;
-	const auto foreign = [&](const McaLawState& l) { return __builtin_popcount(l.flags & mca::automata::linkBits) < 3 || a.groupMask != b.groupMask; };
-	return (ea && eb) || (ea && foreign(la)) || (eb && foreign(lb));
+	return mca::mayTouch(la.flags, lb.flags, a.groupMask == b.groupMask);
 }
 
 void McaPhys::startContact(Real r)
@@ -58,6 +59,20 @@ namespace {
 	std::atomic<bool> anyError { false };
 } // namespace
 
+void McaPhys::postLoad(McaPhys&)
+{
+	if (slot < 0 || slot >= mca::nLinks)
+		throw mca::Error("McaPhys: slot = " + std::to_string(slot) + " in the file must be from 0 to " + std::to_string(mca::nLinks - 1) + "; the file is damaged or was edited.");
+}
+
+void McaLawState::postLoad(McaLawState&)
+{
+	const auto known = mca::linkBits | mca::halfBits | mca::linkBits << mca::hadShift | mca::exposedBit;
+	if (!(partner.size() == size_t(mca::nLinks) || (partner.empty() && flags == 0)) || (flags & ~known) || rule < 0 || rule > 2)
+		throw mca::Error("McaLawState: flags = " + std::to_string(flags) + ", rule = " + std::to_string(rule) + " and " + std::to_string(partner.size())
+		                 + " partners in the file are no links of an automaton; the file is damaged or was edited.");
+}
+
 void McaPhys::leaveError(const string& what)
 {
 	const std::lock_guard<std::mutex> lock(errorLock);
@@ -75,7 +90,7 @@ string McaPhys::takeError()
 
 void McaPhys::setWall(const McaMat& m, Real otherAngle, Real diameter)
 {
-	const Real K = m.density * sqr(m.bulkSoundSpeed), width = Lattice<2>::width(diameter);
+	const Real K = m.density * sqr(m.bulkSoundSpeed), width = Lattice::width(diameter);
 	wall         = true;
 	d            = diameter;
 	kn           = (K + m.shearModulus * (4. / 3.)) * width * 2. / d;
@@ -153,31 +168,35 @@ bool Law2_ScGeom_McaPhys_Mca::go(shared_ptr<IGeom>& geom, shared_ptr<IPhys>& phy
 	const Body &A = *scene->bodies->body[I->getId1()], &B = *scene->bodies->body[I->getId2()];
 	if (p.wall) return wallForce(static_cast<const ScGeom&>(*geom), p, A, B);
 
-	const McaLawState &a = *lawState(A), &b = *lawState(B);
+	const McaLawState *la = lawState(A), *lb = lawState(B);
+	if (!la || !lb) { // a file that was edited
+		McaPhys::leaveError("bodies " + std::to_string(A.id) + " and " + std::to_string(B.id) + " have the contact of two automata but are not both automata; the saved file was edited or damaged.");
+		return true;
+	}
+	const McaLawState &a = *la, &b = *lb;
 	const State &      sa = *A.state, &sb = *B.state;
-	const Real         dx = sb.se3.position[0] - sa.se3.position[0], dy = sb.se3.position[1] - sa.se3.position[1], r2 = dx * dx + dy * dy, inv = 1. / r2;
+	const Real         dx = sb.se3.position[0] - sa.se3.position[0], dy = sb.se3.position[1] - sa.se3.position[1], r2 = mca::dot(mca::Vec<Real> { dx, dy }, mca::Vec<Real> { dx, dy }), inv = 1. / r2;
 	p.force = p.normalForce = p.shearForce = Vector3r::Zero();
 	p.torque = Vector2r::Zero(), p.heatRate = 0, p.viscousForce = Vector2r::Zero();
 	if (!p.linked && !(p.active && p.touching(r2))) return p.linked || r2 < sqr(range * p.d); // returning false erases the pair
 
-	const Real w    = p.linked && p.half ? 0.5 : 1.;
-	const Real area = 0.5 * w * Lattice<2>::width(p.d) * p.d; // S r = S0 d J: exactly the Cauchy stress in any homogeneous deformation
-	const Real Sn = area * (p.s[0] + p.s[1]), St = area * (p.tau[0] + p.tau[1]);
-	const Real along = dx * (sb.vel[0] - sa.vel[0]) + dy * (sb.vel[1] - sa.vel[1]);
-	const Real q     = w * mca::viscousCoefficient(along, inv, p.viscLinear, p.viscQuadratic, Lattice<2>::width(p.d));
-	Real       px, py; // the pressure pushes the first body by -(px, py)
-	if (p.linked && a.rule == int(VolumeRule::affine)) {
-		px = (a.txx + b.txx) * mca::linkX[p.slot] + (a.txy + b.txy) * mca::linkY[p.slot];
-		py = (a.tyx + b.tyx) * mca::linkX[p.slot] + (a.tyy + b.tyy) * mca::linkY[p.slot];
-	} else {
-		const bool mean  = a.rule == int(VolumeRule::meanDistance);
-		const auto shape = [&](Real d) { return mean ? mca::pressureShape<VolumeRule::meanDistance, 2>(d, inv) : mca::pressureShape<VolumeRule::inversePower, 2>(d, inv); };
-		const Real pr = p.linked ? w * (a.share + b.share) * shape(p.d) : (p.pushes(0, r2) ? a.share * shape(p.rest[0]) : 0.) + (p.pushes(1, r2) ? b.share * shape(p.rest[1]) : 0.);
-		px = pr * dx, py = pr * dy;
-	}
-	const Real al = Sn * inv + q, ac = St * inv;
-	p.force       = Vector3r(al * dx - ac * dy - px, al * dy + ac * dx - py, 0);
-	p.torque      = Vector2r(p.share, 1. - p.share) * St;
+	const mca::Vec<Real>  r { dx, dy };
+	const Real            w = p.linked && p.half ? 0.5 : 1., area = mca::pairArea(w, p.d), along = mca::dot(r, mca::Vec<Real> { sb.vel[0] - sa.vel[0], sb.vel[1] - sa.vel[1] });
+	const mca::Pair<Real> both { area * (p.s[0] + p.s[1]), area * (p.tau[0] + p.tau[1]) };
+	const Real            q = w * mca::viscousCoefficient(along, inv, p.viscLinear, p.viscQuadratic, Lattice::width(p.d));
+	mca::Vec<Real>        f = mca::dispatch(VolumeRule(a.rule), [&](auto rule) {
+                const auto shape = [&](Real d) { return mca::pressureShape<mca::ofContacts(rule.value)>(d, inv); };
+                if (!p.linked) {
+                        const Real press = (p.pushes(0, r2) ? a.share * shape(p.rest[0]) : 0.) + (p.pushes(1, r2) ? b.share * shape(p.rest[1]) : 0.);
+                        return mca::contactForce(r, mca::fma(both.normal, inv, q - press), both.shear * inv);
+                }
+                mca::Vec<Real> push; // of the pressures, to the first body its negative
+                if (rule.value == VolumeRule::affine) push = times(mca::Tensor<Real> { a.txx + b.txx, a.txy + b.txy, a.tyx + b.tyx, a.tyy + b.tyy }, p.slot);
+                else push = r * (w * (a.share + b.share) * shape(p.d));
+                return mca::linkForce(r, both.normal * inv + q, both.shear * inv, push);
+        });
+	p.force       = Vector3r(f.x, f.y, 0);
+	p.torque      = Vector2r(mca::arm(a.diameter, b.diameter), mca::arm(b.diameter, a.diameter)) * both.shear;
 	p.heatRate    = q * along, p.viscousForce = Vector2r(q * dx, q * dy);
 	const Vector3r n(dx * std::sqrt(inv), dy * std::sqrt(inv), 0);
 	p.normalForce = -p.force.dot(n) * n;

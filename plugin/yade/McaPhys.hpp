@@ -22,6 +22,7 @@ public:
 	static void   leaveError(const string& what);
 	static string takeError(); ///< empty when there is none
 	static bool   linking; ///< McaDensity makes links: pairs that are made now need no search
+	void          postLoad(McaPhys&); ///< what is used as an index
 	// of McaDensity: the materials that the constants of the pair are made of, and which state of them
 	const Material* madeOf[2] = { nullptr, nullptr };
 	long            revision  = -1;

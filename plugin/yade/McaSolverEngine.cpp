@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "McaSolverEngine.hpp"
 #include "McaGridCoupler.hpp"
+#include "McaGridEngine.hpp"
 #include "McaTimeStepper.hpp"
 #include <chrono>
 #include <core/Omega.hpp>
@@ -86,5 +87,21 @@ void McaSolverEngine::findCoupler(Scene* scene)
 		throw mca::Error(getClassName() + ": a McaGridCoupler has tied a row to it and is now dead or not in O.engines; a tied row cannot move alone. Put the coupler back, or start from a scene without it.");
 	if (!coupled && !stepper && setsStep() && other)
 		throw mca::Error(getClassName() + " and " + other->getClassName() + ": both set O.dt, so time would not be that of either; put a McaTimeStepper first in O.engines, or set adaptive=False in all but one.");
+}
+
+// Breaking links and first contacts can halve the stable step at once. Nothing has moved yet, so a time stepper that comes before this engine may
+// still choose a shorter one, unless something between the two has already used the longer.
+bool McaSolverEngine::shortenStep(Scene* scene, Real limit) const
+{
+	McaTimeStepper* stepper = nullptr;
+	for (const auto& e : scene->engines) {
+		if (e.get() == this) break;
+		if (e->dead) continue;
+		if (auto* t = dynamic_cast<McaTimeStepper*>(e.get())) stepper = t->active ? t : nullptr;
+		else if (dynamic_cast<McaGridEngine*>(e.get()) || e->getClassName() == "NewtonIntegrator") stepper = nullptr;
+	}
+	if (!stepper) return false;
+	stepper->shorten(scene, limit, getClassName() + (label.empty() ? "" : " " + label));
+	return true;
 }
 } // namespace yade

@@ -2,10 +2,10 @@
 // What all engines with unknowns of their own share: the lock around a step, how a step ends with an error, what the time stepper and the coupler ask.
 #pragma once
 #include "McaGuarded.hpp"
+#include "McaLock.hpp"
 #include <atomic>
 #include <core/GlobalEngine.hpp>
 #include <core/Scene.hpp>
-#include <mutex>
 #include <thread>
 
 namespace yade {
@@ -29,6 +29,8 @@ public:
 	/// Whether a coupler of the scene drives this engine, into `coupled`; couplers tie their rows here, before anything moves.
 	/// Throws mca::Error: the engine stands twice in O.engines, several set O.dt, the coupler of its rows is gone, a periodic scene.
 	void findCoupler(Scene* scene);
+	/// O.dt shortened to this stable step [s] while nothing has used the longer one in this step; false when there is no time stepper that could.
+	bool shortenStep(Scene* scene, Real limit) const;
 	/// bringUpToDate() of all engines of the scene.
 	static void settle(Scene* scene);
 	/// settle() of the present scene, from Python.
@@ -37,20 +39,8 @@ public:
 	static bool inLoop();
 	static void endStepUnderWay();
 
-	/// f() with nobody else inside this engine: a step and each call from Python exclude each other. Python's global lock is given up meanwhile, since
-	/// who holds it must never wait for a step.
-	template <class F> auto locked(F&& f) const
-	{
-		struct GiveUp {
-			PyThreadState* state = Py_IsInitialized() && PyGILState_Check() ? PyEval_SaveThread() : nullptr;
-			~GiveUp()
-			{
-				if (state) PyEval_RestoreThread(state);
-			}
-		} giveUp; // taken back after the lock is open again
-		std::lock_guard<std::recursive_mutex> lock(mutex);
-		return f();
-	}
+	/// f() with nobody else inside this engine: a step and each call from Python exclude each other.
+	template <class F> auto locked(F&& f) const { return lock.locked(f); }
 	Real safeCriticalTimeStep() const
 	{
 		return locked([&] { return criticalTimeStep(); });
@@ -67,7 +57,15 @@ public:
 	// clang-format on
 
 private:
-	mutable std::recursive_mutex                mutex;
+	/// Python's global lock is given up meanwhile by who has it.
+	struct GiveUp {
+		PyThreadState* state = Py_IsInitialized() && PyGILState_Check() ? PyEval_SaveThread() : nullptr;
+		~GiveUp()
+		{
+			if (state) PyEval_RestoreThread(state);
+		}
+	};
+	McaLock<GiveUp>                            lock;
 	static inline std::atomic<std::thread::id> lastStep {};
 	static inline std::atomic<long>            failures { 0 }; ///< steps that have ended with an error
 };

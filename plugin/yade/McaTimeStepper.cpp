@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "McaTimeStepper.hpp"
+#include <kernels/automaton/limit.hpp>
 #include "McaDensity.hpp"
 #include "McaEngine.hpp"
 #include <core/Scene.hpp>
@@ -54,9 +55,7 @@ void McaTimeStepper::choose(Scene* scene)
 			const auto* r = m ? dynamic_cast<const Sphere*>(b->shape.get()) : nullptr;
 			const auto* s = r ? dynamic_cast<const McaState*>(b->state.get()) : nullptr;
 			if (!s) continue;
-			const Real J = s->volumeRatio, d = 2. * r->radius * std::min(Real(1), J);
-			const auto c = m->toMaterial();
-			const Real t = mca::stableStep(d, mca::longitudinalSpeed(c.eos, c.G, J - 1.), c.cS(), c.viscosity.linear);
+			const Real t = mca::stepLimitAtRest(m->toMaterial(), 2. * r->radius, s->volumeRatio);
 			if (t < found) found = t, who = "body " + std::to_string(b->id);
 		}
 	if (!std::isfinite(found)) return; // nothing of ours in the scene

@@ -20,9 +20,9 @@ public:
 		":yref:`McaMat` when none of them has them. Tied nodes need no smaller one: their mass is at least that of both sides together. "
 		"Where the stable step of automata falls by more than the factor within one step (links break, bodies meet), O.dt is shortened before anything moves. "
 		"Put it first in O.engines. It switches the engines' own `adaptive` off.",
-		((Real, factor, 0.4, , "share of the largest stable time step [-], above 0 and at most 1"))
-		((Real, growth, 1.1, , "largest ratio of a step to the one before [-], above 1"))
-		((Real, largest, std::numeric_limits<Real>::infinity(), , "upper bound of O.dt [s]"))
+		((Real, factor, 0.4, , "share of the largest stable time step [-], above 0 and at most 1; read in every step (every timeStepUpdateInterval)"))
+		((Real, growth, 1.1, , "largest ratio of a step to the one before [-], above 1; read in every step (every timeStepUpdateInterval)"))
+		((Real, largest, std::numeric_limits<Real>::infinity(), , "upper bound of O.dt [s]; read in every step (every timeStepUpdateInterval)"))
 		((Real, limit, 0, Attr::readonly, "largest stable step found [s]"))
 		((string, limitedBy, "", Attr::readonly, "what has set `limit`: class and label of an engine, or a body"))
 		((Real, previous, 0, Attr::hidden, "step set last [s]"))

@@ -52,8 +52,10 @@ def array(name, value, error, shape, empty=False):
 		refuse(name, rule, value, error)
 	if empty and a.size == 0: return np.zeros([k or 0 for k in shapes[0]])
 	fits = any(a.ndim == len(s) and all(k is None and n > 0 or k == n for k, n in zip(s, a.shape)) for s in shapes)
-	if a.dtype.kind not in 'iuf' or not fits or not (abs(a.astype(float)) <= LARGEST).all(): refuse(name, rule, value, error)
-	return a.astype(float)
+	if a.dtype.kind not in 'iuf' or not fits: refuse(name, rule, value, error)
+	a = a.astype(float)
+	if not abs(a).max() <= LARGEST: refuse(name, rule, value, error)  # nor nan
+	return a
 
 
 def numbersOfAnyShape(name, value, error, low=-math.inf):

@@ -4,27 +4,69 @@
 Stock O.pause(), and at times O.wait(), return while the last step is still being made, and nothing tells an engine that the loop has ended: whoever reads O.bodies then may
 find the state of an earlier step. Here they return when that step is over, and O.bodies asks the plugin's engines first to write what they have
 not written (nothing, nearly always). O.save and its kin, called while the loop runs in the background, would mix two steps in one file: they
-pause, save and go on.
+pause, save and go on. O.reset and its kin take the loop away from a thread that has been paused before it has begun: O.pause() waits for its end,
+and they pause first.
 
 Set YADE_MCA_STOCK_OMEGA=1 to leave YADE as it is (a YADE that waits in O.pause() does not need this).
 """
 import functools
 import os
+import threading
+import time
 
 SAVING = ('save', 'saveTmp', 'sceneToString')
+ENDING = ('reset', 'load', 'loadTmp', 'reload', 'stringToScene')
+TASKS = '/proc/self/task'
+PATIENCE = 5.  #: [s] that a thread has for its end after the last step
+
+
+class Loop:
+	"""The thread that the last O.run(n) has started; YADE's own record of it ends before the thread does."""
+
+	def __init__(self): self.threads, self.before = set(), None  # tasks of this process; before: those that were there, while it is being started
+
+	@staticmethod
+	def alive():
+		try:
+			return set(os.listdir(TASKS))
+		except OSError:  # no /proc: as stock YADE
+			return set()
+
+	def started(self, start):
+		"""start() makes the thread, which may ask isThis() before it is known here."""
+		self.before = self.alive()
+		try:
+			start()
+			self.threads = self.alive() - self.before - {str(t.native_id) for t in threading.enumerate() if not t.name.startswith('Dummy-')}  # foreign ones have such names
+		finally:
+			self.before = None
+
+	def isThis(self):
+		"""Whether it is the thread that asks: a PyRunner."""
+		me, before = str(threading.get_native_id()), self.before
+		return me in self.threads if before is None else me not in before
+
+	def end(self):
+		"""Waits until it is gone; others may go on meanwhile."""
+		last = time.monotonic() + PATIENCE
+		while self.threads and not self.isThis() and time.monotonic() < last:
+			self.threads &= self.alive()
+			if self.threads: time.sleep(1e-4)
 
 
 def mend(omega, settler):
 	"""Changes the class `omega` (yade.wrapper.Omega); settler: class with settle(), endStepUnderWay() and inLoop()."""
 	if os.environ.get('YADE_MCA_STOCK_OMEGA') == '1' or hasattr(omega, '_yadeMcaMended'): return
 	omega._yadeMcaMended = True
-	pause, bodies, settle = omega.pause, omega.bodies, settler.settle
+	pause, run, bodies, settle, loop = omega.pause, omega.run, omega.bodies, settler.settle, Loop()
 
 	@functools.wraps(pause)
 	def pauseWhole(self):
 		running = self.running
 		pause(self)
+		if loop.isThis(): return  # a PyRunner
 		if running: settler.endStepUnderWay()
+		if not settler.inLoop(): loop.end()
 
 	def whole(call):
 		"""O.wait() and O.run(n, True) may come back before the last step is counted, when a PyRunner has paused the loop."""
@@ -36,14 +78,23 @@ def mend(omega, settler):
 
 		return wrapped
 
+	runWhole = whole(run)
+
+	@functools.wraps(run)
+	def runNoted(self, *args, **keywords):
+		if (keywords['wait'] if 'wait' in keywords else len(args) > 1 and args[1]): return runWhole(self, *args, **keywords)
+		loop.started(lambda: run(self, *args, **keywords))
+
 	def bodiesUpToDate(self):
 		settle()
 		return bodies.fget(self)
 
-	omega.pause, omega.wait, omega.run = pauseWhole, whole(omega.wait), whole(omega.run)
+	omega.pause, omega.wait, omega.run = pauseWhole, whole(omega.wait), runNoted
 	omega.bodies = property(bodiesUpToDate, doc=bodies.__doc__)
 	for name in SAVING:
 		if hasattr(omega, name): setattr(omega, name, _betweenSteps(getattr(omega, name), pauseWhole, settler))
+	for name in ENDING:
+		if hasattr(omega, name): setattr(omega, name, _afterTheLoop(getattr(omega, name), pauseWhole, settler))
 
 
 def _betweenSteps(call, pause, settler):
@@ -57,3 +108,12 @@ def _betweenSteps(call, pause, settler):
 			self.run()
 
 	return saved
+
+
+def _afterTheLoop(call, pause, settler):
+	@functools.wraps(call)
+	def ending(self, *args, **keywords):
+		if not settler.inLoop(): pause(self)
+		return call(self, *args, **keywords)
+
+	return ending

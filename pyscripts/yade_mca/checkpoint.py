@@ -6,11 +6,14 @@
 
 Layout: a line that names the format, a line of JSON (lengths and SHA-256 of the parts, version, facts), the arrays (npz), the scene (YADE's
 binary format). A file that is cut, damaged, of another kind or of another version of the plugin is refused before anything is touched.
+
+The checksums show damage, not intent: a scene may hold engines (PyRunner) that run Python. Trust a checkpoint, as a .yade or .xml, like a program.
 """
 import hashlib
 import io
 import json
 import os
+import re
 
 import numpy as np
 
@@ -81,11 +84,34 @@ def peek(path):
 	return _parse(path)[0]['facts']
 
 
-def read(path):
-	"""Puts the saved scene in the place of O and returns (facts, arrays). Raises CheckpointError; O is untouched then."""
+def _classes(saved):
+	"""Names of YADE's classes in a scene in the binary format: each stands there in full, with its length in front, where the first object of it is."""
+	starts = (m.start() for m in re.finditer(rb'(?=\x00{7}yade::)', saved))
+	return {saved[i + 7:i + 7 + saved[i - 1]][6:].decode('ascii', 'replace') for i in starts if i > 0}
+
+
+def _checkEngines(path, saved, engines):
+	"""Raises CheckpointError when the scene holds an engine, functor or callback whose class is not in `engines`."""
+	from ._yade import yadeClass
+	for name in sorted(_classes(saved) - set(engines)):
+		try:
+			known = yadeClass(name)
+		except ImportError:
+			known = None
+		if known is None or any(issubclass(known, yadeClass(base)) for base in ('Engine', 'Functor', 'IntrCallback')):
+			raise CheckpointError("checkpoint '%s' holds %s, which this program does not make: whatever it does would be run; load it with checkpoint.read() if you trust it" % (path, name))
+
+
+def read(path, engines=None):
+	"""Puts the saved scene in the place of O and returns (facts, arrays). Raises CheckpointError; O is untouched then.
+
+	engines: names of the classes of engines that the scene may hold; any other is refused before the scene is made. None: all, for files that one trusts like programs.
+	"""
 	head, (packed, saved) = _parse(path)
 	if head['version'] != _version():
 		raise CheckpointError("checkpoint '%s' was written by version %s, this is %s: it would not go on identically" % (path, head['version'], _version()))
+	if engines is not None:
+		_checkEngines(path, saved, engines)
 	with np.load(io.BytesIO(packed), allow_pickle=False) as z:
 		arrays = {k: z[k] for k in z.files}
 	scene().stringToScene(saved)

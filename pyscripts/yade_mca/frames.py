@@ -253,9 +253,9 @@ class Frames:
 def paint(painter, run):
 	"""The frame of a run of impact.Impact now."""
 	s = run.scene
-	field = s.automata.field
-	rod = np.isin(s.automata.ids, s.ids['rod'])
-	positions, diameter, strain = np.stack((field('x'), field('y')), axis=1), field('diameter'), field('plasticStrain')
+	f = s.automata.fields(['ids', 'x', 'y', 'diameter', 'plasticStrain'])
+	rod = np.isin(f['ids'], s.ids['rod'])
+	positions, diameter, strain = np.stack((f['x'], f['y']), axis=1), f['diameter'], f['plasticStrain']
 	bodies = [(positions[some], diameter[some], shade(strain[some], first)) for some, first in ((~rod, 1 + SHADES), (rod, 1))]
 	view = lambda block, name: np.array(s.grid.view(block, name))
 	grids = [(np.stack((view(k, 'x'), view(k, 'y')), axis=-1), shade(view(k, 'plasticStrain'), 1 + SHADES)) for k in s.blocks.values()]

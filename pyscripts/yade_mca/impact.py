@@ -25,9 +25,8 @@ __all__ = ['Impact', 'ImpactError']
 COLUMNS = ('time', 'step', 'dt', 'lengthLoss', 'lengthLossUnbroken', 'lengthLossGeometric', 'velocityLossTail', 'velocityLossAll', 'tailVelocity', 'allVelocity', 'tailMass', 'clearance', 'momentum',
            'kinetic', 'stored', 'plastic', 'viscous', 'friction', 'fracture', 'grid', 'total', 'booked', 'momentumX', 'momentumY', 'deepest', 'clamped',
            'brokenLinks', 'contacts', 'awake')
-
-
-ENGINES = ('McaTimeStepper', 'McaEngine', 'McaGridEngine', 'McaGridCoupler')  #: of scenes.penetration()
+#: all that the scenes of this module run; a checkpoint with anything else (a PyRunner runs Python) is refused
+ENGINES = ('McaTimeStepper', 'McaEngine', 'McaGridEngine', 'McaGridCoupler')
 
 
 class ImpactError(RuntimeError):
@@ -115,21 +114,22 @@ class Impact:
 
 	def _sample(self):
 		s, o, r = self.scene, omega(), self.record
-		v, e = s.vectors('rod', 'vx', 'vy'), s.field('rod', 'plasticStrain')
-		position = s.vectors('rod', 'x', 'y')
+		f = s.fields('rod', ('mass', 'x', 'y', 'vx', 'vy', 'plasticStrain'))
+		v, e, position = np.stack((f['vx'], f['vy']), axis=1), f['plasticStrain'], np.stack((f['x'], f['y']), axis=1)
 		if not (np.isfinite(v).all() and np.isfinite(position).all()):
 			raise ImpactError('not a number in the state of the rod at step %d' % o.iter)
-		m = measure.rodMeasure(s.field('rod', 'mass'), v, e, s.facts['speed'], s.facts['direction'])
+		m = measure.rodMeasure(f['mass'], v, e, s.facts['speed'], s.facts['direction'])
 		row = dict(m.asDict(), time=o.time, step=o.iter, dt=o.dt, clearance=measure.rearClearance(position, e, s.facts['rear'], s.facts['normal']))
-		row['lengthLossGeometric'] = 1 - scenes.rodLength(s) / s.facts['restLength']
+		row['lengthLossGeometric'] = 1 - measure.geometricLength(position, e, 0.5 * s.facts['rodDiameter'], s.facts['direction']) / s.facts['restLength']
 		row['momentum'] = m.allVelocity * self.rodMass
 		a, c = s.automata.energies(), s.automata.counters()
 		row.update({k: a[k] for k in ('plastic', 'viscous', 'friction', 'fracture')})
 		row.update(kinetic=a['kinetic'], stored=a['volumetric'] + a['deviatoric'], grid=0., total=a['total'], booked=a['bookedError'], momentumX=a['momentumX'] - a['impulseX'],
 		           momentumY=a['momentumY'] - a['impulseY'])
-		if s.couplers:
-			b, g = s.couplers[0].energies(), s.grid.energies()
-			row.update(kinetic=b['kinetic'], grid=g['internal'], total=b['total'], booked=b['booked'], momentumX=b['momentumX'] - b['impulseX'], momentumY=b['momentumY'] - b['impulseY'])
+		if s.couplers:  # the sums of McaGridCoupler.energies(), without another look at all automata
+			g = s.grid.energies()
+			row.update(kinetic=a['kinetic'] + g['kinetic'], grid=g['internal'], total=a['total'] + g['total'], booked=a['bookedError'] + g['total'],
+			           momentumX=a['momentumX'] + g['momentumX'] - (a['impulseX'] + g['impulseX']), momentumY=a['momentumY'] + g['momentumY'] - (a['impulseY'] + g['impulseY']))
 		row.update({k: c.get(k, 0) for k in ('deepest', 'clamped', 'brokenLinks', 'contacts', 'awake')})
 		for k in COLUMNS:
 			r[k].append(float(row[k]))
@@ -187,16 +187,9 @@ class Impact:
 
 	@classmethod
 	def load(cls, path, until=None):
-		"""(Impact, extra) of a checkpoint; O becomes the saved scene. until: another end [s].
-
-		Raises checkpoint.CheckpointError, also where the scene holds engines that scenes.penetration() does not make: a PyRunner would run what it says. O is empty then.
-		"""
-		facts, arrays = checkpoint.read(path)
+		"""(Impact, extra) of a checkpoint; O becomes the saved scene. until: another end [s]. Raises checkpoint.CheckpointError, also when the scene holds other engines than ENGINES."""
+		facts, arrays = checkpoint.read(path, ENGINES)
 		engines = omega().engines
-		others = sorted({type(e).__name__ for e in engines} - set(ENGINES))
-		if others:
-			omega().reset()
-			raise checkpoint.CheckpointError("checkpoint '%s' holds engines that a penetration run does not have: %s; load it with yade_mca.checkpoint.read() if you trust where it comes from" % (path, ', '.join(others)))
 		find = lambda name: [e for e in engines if type(e).__name__ == name]
 		s = scenes.Scene(automata=find('McaEngine')[0], grid=(find('McaGridEngine') or [None])[0], couplers=find('McaGridCoupler'),
 		                 ids={k[4:]: v for k, v in arrays.items() if k.startswith('ids ')}, blocks=facts['scene']['blocks'], facts=facts['scene']['facts'])

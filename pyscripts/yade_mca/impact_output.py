@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Files of a penetration run: pictures of the pattern, the history plot, the animation, ParaView files. Needs no more of YADE than the scene's arrays."""
-import sys
 import time
 from pathlib import Path
 
 import numpy as np
 
 from . import plots, vtk_output
+from .tasks.attempts import Attempts
 
 __all__ = ['Output', 'historyPicture', 'patternPicture', 'writeParaview']
 
@@ -16,10 +16,10 @@ PRESSURE = dict(label='pressure', unit='Pa', vmin=-6e9, vmax=6e9, cmap='RdBu_r')
 
 def automataFields(s):
 	"""(positions (N, 2) [m], radius (N,) [m], fields) of all automata; names of the fields carry their units."""
-	a, f = s.automata, s.automata.field
-	fields = {'velocity [m/s]': np.stack((f('vx'), f('vy')), axis=1), 'pressure [Pa]': f('pressure'), 'equivalentStress [Pa]': f('equivalentStress'),
-	          'plasticStrain': f('plasticStrain'), 'temperature [K]': f('temperature'), 'links': f('links'), 'rod': np.isin(a.ids, s.ids['rod']).astype(np.uint8)}
-	return np.stack((f('x'), f('y')), axis=1), 0.5 * f('diameter'), fields
+	f = s.automata.fields(['ids', 'x', 'y', 'vx', 'vy', 'diameter', 'pressure', 'equivalentStress', 'plasticStrain', 'temperature', 'links'])
+	fields = {'velocity [m/s]': np.stack((f['vx'], f['vy']), axis=1), 'pressure [Pa]': f['pressure'], 'equivalentStress [Pa]': f['equivalentStress'],
+	          'plasticStrain': f['plasticStrain'], 'temperature [K]': f['temperature'], 'links': f['links'], 'rod': np.isin(f['ids'], s.ids['rod']).astype(np.uint8)}
+	return np.stack((f['x'], f['y']), axis=1), 0.5 * f['diameter'], fields
 
 
 def gridFields(s, block):
@@ -110,7 +110,7 @@ def historyPicture(path, run, title=''):
 class Output:
 	"""Pictures at given times and at the end, frames of the animation and ParaView files at regular ones.
 
-	A file that cannot be written does not end the run: it is named on the standard error and in `failures` ({path: why}).
+	A file that cannot be written does not end the run: it is named on the standard error and in `attempt.failures` ({path: why}).
 	"""
 
 	def __init__(self, folder, pictures=(0., 20e-6, 40e-6), every=5e-6, resumeAt=None, animation=True):
@@ -119,7 +119,7 @@ class Output:
 		self.paraview = self.folder / 'paraview'
 		self.paraview.mkdir(exist_ok=True)
 		self.collection = vtk_output.Collection(self.folder / 'penetration.pvd', keep=resumeAt is not None)
-		self.failures = {}
+		self.attempt = Attempts('penetration')
 		self.animation, self.frames = animation, None
 		self.seconds = {'animation': 0.}  #: processor time by kind of file, what the computation pays
 		self.next = 0
@@ -134,19 +134,6 @@ class Output:
 	@staticmethod
 	def name(t):
 		return 'pattern_%02.0fus.png' % (1e6 * t)
-
-	def attempt(self, path, write, *args):
-		"""write(*args); True when it worked. A path that could not be written stays in `failures` until it can."""
-		try:
-			write(*args)
-		except OSError as e:
-			name, why = str(e.filename or path), e.strerror or str(e)
-			if name not in self.failures:
-				print("\npenetration: cannot write '%s': %s; the run goes on" % (name, why), file=sys.stderr)
-			self.failures[name] = why
-			return False
-		self.failures.pop(str(path), None)
-		return True
 
 	def update(self, run, end=False):
 		"""To be called at the start and after each sample; writes what is due."""

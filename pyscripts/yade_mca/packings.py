@@ -5,7 +5,7 @@
     >>> plate = packings.hexagonal(1e-3, packings.Rectangle((0, 0), (80e-3, 25e-3)), angle=0.5 * math.pi)
     >>> ids = packings.addBodies(plate, '4340', velocity=(0, 0))
 
-A packing is numbers only (numpy arrays); addBodies() alone needs YADE. All lengths in [m], areas and masses per unit thickness.
+A packing is numbers only (numpy arrays); addBodies() and resetStates() alone need YADE. All lengths in [m], areas and masses per unit thickness.
 """
 import math
 import reprlib
@@ -16,7 +16,7 @@ import numpy as np
 from ._arguments import array, number, oneOf, whole
 from .outlines import Polygon, Predicate, Rectangle, asOutline, disc
 
-__all__ = ['Packing', 'PackingError', 'CellGeometry', 'cellGeometry', 'hexagonal', 'create', 'addBodies', 'Polygon', 'Predicate', 'Rectangle', 'disc']
+__all__ = ['Packing', 'PackingError', 'CellGeometry', 'cellGeometry', 'hexagonal', 'create', 'addBodies', 'resetStates', 'Polygon', 'Predicate', 'Rectangle', 'disc']
 
 
 class PackingError(ValueError):
@@ -324,3 +324,29 @@ def addBodies(packing, material, velocity=(0., 0.), angularVelocity=0., mask=1, 
 		b.mask = mask
 		bodies.append(b)
 	return scene().bodies.append(bodies)
+
+
+def resetStates(ids):
+	"""Gives automata the state of rest: a fresh McaState with the position, velocity, orientation, spin, mass, inertia, blockedDOFs and strength of the old one.
+
+	ids: of bodies in O.bodies with material McaMat and shape Sphere, whole numbers. For bodies that another engine has moved: links are made anew from where
+	they are now (the engine refuses a packing that is too distorted for it), pressure, stresses, plastic strain and heat are gone, the temperature is the
+	material's referenceTemperature. An engine takes over bodies in this state when it gathers them for the first time; the one that has moved them refuses
+	the next step, so put a new one into O.engines.
+	Raises PackingError for an id that is no automaton, before any state is changed.
+	"""
+	from ._yade import scene, yadeClass
+	o, State, Mat, Sphere = scene(), yadeClass('McaState'), yadeClass('McaMat'), yadeClass('Sphere')
+	if not isinstance(ids, (list, tuple, range)) and not (isinstance(ids, np.ndarray) and ids.ndim == 1):
+		raise PackingError('ids must be a row of whole numbers, each the id of an automaton in O.bodies; got %s' % reprlib.repr(ids))
+	bodies = []
+	for i in [whole('each of ids', i, PackingError) for i in ids]:
+		b = o.bodies[i] if i < len(o.bodies) else None
+		if b is None or not isinstance(b.material, Mat) or not isinstance(b.shape, Sphere) or not isinstance(b.state, State):
+			raise PackingError('ids: body %d must be an automaton in O.bodies (material McaMat, shape Sphere, state McaState)' % i)
+		bodies.append(b)
+	for b in bodies:
+		old, new = b.state, b.material.newAssocState()
+		for name in ('pos', 'ori', 'vel', 'angVel', 'angMom', 'mass', 'inertia', 'refPos', 'refOri', 'blockedDOFs', 'isDamped', 'densityScaling', 'strength'):
+			setattr(new, name, getattr(old, name))
+		b.state = new

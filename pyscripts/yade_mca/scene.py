@@ -35,7 +35,14 @@ class Scene:
 
 	def field(self, part, name):
 		"""Quantity `name` of McaEngine.field() for the automata of `part`, in the order of ids[part]."""
-		return self.automata.field(name)[np.searchsorted(self.automata.ids, self.idsOf(part))]
+		return self.fields(part, (name, ))[name]
+
+	def fields(self, part, names):
+		"""Quantities `names` of McaEngine.field() for the automata of `part`, in the order of ids[part]: dict. One look at the bodies for all."""
+		ids = self.idsOf(part)
+		found = self.automata.fields(('ids', *names))
+		at = np.searchsorted(found['ids'], ids)
+		return {name: found[name][at] for name in names}
 
 	def idsOf(self, part):
 		"""Body ids of `part`. Raises SceneError when there is no such part."""
@@ -44,7 +51,8 @@ class Scene:
 
 	def vectors(self, part, x, y):
 		"""Two quantities as columns, e.g. vectors('rod', 'vx', 'vy')."""
-		return np.stack((self.field(part, x), self.field(part, y)), axis=1)
+		found = self.fields(part, (x, y))
+		return np.stack((found[x], found[y]), axis=1)
 
 	def add(self, part, packing, material, **options):
 		"""Adds bodies under the name `part` (text); see packings.addBodies."""

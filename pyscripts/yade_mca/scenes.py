@@ -218,10 +218,11 @@ def penetration(thickness=25e-3, spacing=1e-3, speed=1520., mode='coupled', ends
 
 def rodMeasure(s):
 	"""measure.rodMeasure() of a penetration scene now; reads the solver's arrays, no write-back needed."""
-	return measure.rodMeasure(s.field('rod', 'mass'), s.vectors('rod', 'vx', 'vy'), s.field('rod', 'plasticStrain'), s.facts['speed'], s.facts['direction'])
+	f = s.fields('rod', ('mass', 'vx', 'vy', 'plasticStrain'))
+	return measure.rodMeasure(f['mass'], np.stack((f['vx'], f['vy']), axis=1), f['plasticStrain'], s.facts['speed'], s.facts['direction'])
 
 
 def rodLength(s):
 	"""measure.geometricLength() of a penetration scene now [m]; 1 - rodLength(s)/s.facts['restLength'] is the geometric dl/l0."""
-	f = s.facts
-	return measure.geometricLength(s.vectors('rod', 'x', 'y'), s.field('rod', 'plasticStrain'), 0.5 * f['rodDiameter'], f['direction'])
+	f, facts = s.fields('rod', ('x', 'y', 'plasticStrain')), s.facts
+	return measure.geometricLength(np.stack((f['x'], f['y']), axis=1), f['plasticStrain'], 0.5 * facts['rodDiameter'], facts['direction'])

@@ -86,7 +86,8 @@ def profile(s, part, *names):
 	keep = middle(p)
 	x = p.positions[keep, 0]
 	column = np.floor((x - x.min()) / (p.spacing * (1. if p.angle == 0 else PITCH)) + 1e-6).astype(int)
-	return [np.bincount(column, s.field(part, n)[keep]) / np.bincount(column) for n in ('x', *names)]
+	found = s.fields(part, ('x', *names))
+	return [np.bincount(column, found[n][keep]) / np.bincount(column) for n in ('x', *names)]
 
 
 def plateImpact(flyer, target, flyerThickness, targetThickness, height, spacing, speed, lateral='fixed', engineOptions=None):

@@ -55,8 +55,8 @@ class Picture:
 		"""Positions and colours as they are now."""
 		if self.automata is not None and self.automata.count:
 			self.automata.sync()
-			v = self.automata.field(self.name)
-			for i, c in zip(self.automata.ids.tolist(), colours(v, self.low, self.high).tolist()):
+			now = self.automata.fields(['ids', self.name])
+			for i, c in zip(now['ids'].tolist(), colours(now[self.name], self.low, self.high).tolist()):
 				scene().bodies[i].shape.color = c
 		for block, ids in self.facets.items():
 			corners = self._corners(block)

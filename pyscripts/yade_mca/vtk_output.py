@@ -7,7 +7,6 @@ unit into the name, as in 'pressure [Pa]'.
 """
 import errno
 import os
-import tempfile
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
@@ -60,31 +59,23 @@ def _fields(data, fields, count):
 
 
 def _write(writer, dataset, path, time):
-	"""Writes `dataset` next to `path` and renames it; raises OSError when VTK could not write it all."""
+	"""Writes `dataset` to `path`, whole or not at all, as writeAtomically does; raises OSError when VTK could not write it all."""
 	path = str(path)
 	if time is not None:
 		toVtk = _vtk()[0]
 		t = toVtk(np.array([float(time)]), deep=True)
 		t.SetName('TimeValue')
 		dataset.GetFieldData().AddArray(t)
-	handle, temporary = tempfile.mkstemp('.part', '.' + os.path.basename(path) + '.', os.path.dirname(os.path.abspath(path)))  # VTK cuts '_' off the end of a name
-	os.close(handle)
-	try:
-		writer.SetFileName(temporary)
+
+	def fill(name):
+		writer.SetFileName(name)
 		writer.SetInputData(dataset)
 		writer.SetDataModeToAppended()
 		writer.EncodeAppendedDataOff()
-		ok = writer.Write()
-		if not ok or writer.GetErrorCode():
-			raise OSError(errno.EIO, 'VTK error %d (is the disk full?)' % writer.GetErrorCode(), path)
-		mask = os.umask(0)
-		os.umask(mask)
-		os.chmod(temporary, 0o666 & ~mask)
-		os.replace(temporary, path)
-	except BaseException:
-		if os.path.exists(temporary):
-			os.unlink(temporary)
-		raise
+		if not writer.Write() or writer.GetErrorCode():
+			raise OSError(errno.EIO, 'VTK error %d (is the disk full?)' % writer.GetErrorCode())
+
+	writeAtomically(path, fill)
 	return path
 
 

@@ -55,7 +55,7 @@ def compileAltered(tmp_path, precompiled, edits, extraSource=''):
 	one = tmp_path / 'all.cpp'
 	one.write_text(''.join('#include "%s"\n' % (sdk / s) for s in sources) + extraSource)
 	out = tmp_path / '_altered.so'
-	command = arguments() + ['-include', str(precompiled), '-I', str(include), '-I', str(ROOT / 'plugin'), str(one), '-o', str(out)] + arguments('link')
+	command = arguments() + ['-include', str(precompiled), '-I', str(include), '-I', str(sdk / 'helpers'), '-I', str(ROOT / 'plugin'), str(one), '-o', str(out)] + arguments('link')
 	done = subprocess.run(command, capture_output=True, text=True)
 	assert done.returncode == 0, done.stderr
 	return out
@@ -94,7 +94,7 @@ def test_theCompilerRefusesAlteredDeclarationsFirst(tmp_path):
 	path = include / 'core' / 'State.hpp'
 	path.write_text(path.read_text().replace('Real         mass; ', 'Real extra_; Real         mass; '))
 	(tmp_path / 'x.cpp').write_text('#include <sdk/layout.hpp>\n')
-	done = subprocess.run([a for a in arguments() if 'NO_LAYOUT' not in a] + ['-fsyntax-only', '-I', str(include), str(tmp_path / 'x.cpp')], capture_output=True, text=True)
+	done = subprocess.run([a for a in arguments() if 'NO_LAYOUT' not in a] + ['-fsyntax-only', '-I', str(include), '-I', str(ROOT / 'plugin' / 'sdk' / 'helpers'), str(tmp_path / 'x.cpp')], capture_output=True, text=True)
 	assert done.returncode != 0 and 'sizeof State' in done.stderr
 
 

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Setting up and starting where something is missing or taken: another user's build, a build under way, no HOME, nobody who reads."""
+"""Setting up and starting where something is missing or taken: packages, another user's build, a build under way, no HOME, nobody who reads."""
+import ast
 import fcntl
+import importlib.util
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -88,6 +91,29 @@ def test_aWaitingCallSaysForWhom(tree):
 def test_unknownPurpose(tree):
 	process = subprocess.run([str(tree / 'pyscripts' / 'setup'), 'tset'], capture_output=True, text=True)
 	assert process.returncode == 2 and process.stderr == "setup: 'tset' is none of run, tests, docs\n"
+
+
+def imported():
+	"""{module: a file that imports it} of all that is neither Python's own nor the project's."""
+	found = {}
+	for path in [*(ROOT / 'pyscripts').rglob('*.py'), *(ROOT / 'plugin').rglob('*.py')]:
+		for node in ast.walk(ast.parse(path.read_text())):
+			names = [a.name for a in node.names] if isinstance(node, ast.Import) else [node.module] if isinstance(node, ast.ImportFrom) and not node.level else []
+			found.update({name.split('.')[0]: path for name in names})
+	own = {p.stem for p in (ROOT / 'plugin').rglob('*.py')} | {'yade_mca', 'yade', '__main__'}
+	return {name: path for name, path in found.items() if name not in own and name not in sys.stdlib_module_names}
+
+
+def test_eachImportedPackageIsInstalledForUsers():
+	"""Each module lies in a package that `pyscripts/setup run` names, or that YADE itself needs; here all packages of the tests are installed, too, which hides what is missing."""
+	named = re.search(r'^packages=\((.*?)\)', (ROOT / 'pyscripts/setup').read_text(), re.S | re.M)[1].split()
+	dpkg = lambda *a: subprocess.run(['dpkg-query', *a], capture_output=True, text=True).stdout
+	needs = set(re.findall(r'[\w.+-]+', re.sub(r'\(.*?\)', '', dpkg('-W', '-f', '${Depends}, ', 'yade', 'python3-yade'))))
+	modules = imported()
+	assert {'numpy', 'vtkmodules', 'PIL'} <= set(modules)
+	for module, path in modules.items():
+		owner = dpkg('-S', importlib.util.find_spec(module).origin).split(':')[0]
+		assert owner in named or (owner in needs and module == 'PyQt5'), '%s imports %s of %s, which pyscripts/setup does not install' % (path, module, owner or 'no package')
 
 
 # ---- starting

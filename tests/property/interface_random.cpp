@@ -30,7 +30,7 @@ struct Coupled {
 				const double        x = -i * pitch, y = (j + 0.5 * (i % 2)) * d;
 				a.x = c * x - s * y, a.y = s * x + c * y;
 				a.weight   = (i == 0 ? 0.5 : 1.) * (i % 2 == 0 && (j == 0 || j == n) ? 0.5 : 1.);
-				a.diameter = d, a.mass = a.weight * m.eos.rho0 * Lattice<2>::cell(d), a.inertia = a.mass * d * d / 8.;
+				a.diameter = d, a.mass = a.weight * m.eos.rho0 * Lattice::cell(d), a.inertia = a.mass * d * d / 8.;
 				a.vx = 20. * u(random), a.vy = 20. * u(random), a.omega = 1e4 * u(random);
 				a.id = int(list.size());
 				list.push_back(a);

@@ -31,6 +31,11 @@ def predicate():
 	return pack.inSphere((0, 0, 0), 4 * D)
 
 
+def bodies():
+	from yade_mca import packings
+	return packings.addBodies(packing(), '4340')
+
+
 def record():
 	from yade_mca import materials
 	return materials.get('4340')
@@ -64,7 +69,7 @@ GOOD = {
         'obliquity': 0., 'vx': 10., 's': penetrationScene, 'scenes.profile.s': strips, 'scenes.profile.part': 'flyer', 'scenes.driveEnd.s': strips,
         'scenes.addStrip.packing': lambda: packing().translated((0.5, 0.)), 'scenes.driveEnd.part': 'flyer', 'scenes.taylorBar.anvil': 'rough',
         'measure.rodMeasure.velocity': [(0., -90.), (0., -80.)], 'measure.speedAlong.velocity': [(0., -90.), (0., -80.)],
-        'packings.cellGeometry.name': 'hexagonal', 'packings.create.name': 'hexagonal', 'scenes.tiedPlate.largest': 3.,
+        'packings.resetStates.ids': bodies, 'packings.cellGeometry.name': 'hexagonal', 'packings.create.name': 'hexagonal', 'scenes.tiedPlate.largest': 3.,
         'materials.Material.flowStress.plasticStrain': 0.1, 'materials.Material.johnsonCookFractureStrain.triaxiality': 0.3,
         'measure.momentumSettled.tolerance': 1e-3, 'outlines.Polygon.classify.radius': D
 }

@@ -17,6 +17,7 @@ D = 1e-3
 #: arguments of reading methods that have some
 WITH = {
         'McaEngine.field': [(name, ) for name in ('x', 'vx', 'pressure', 'plasticStrain', 'links', 'brokenLinks', 'equivalentStress', 'material')],
+        'McaEngine.fields': [(['ids', 'x', 'pressure', 'links'], )],
         'McaGridEngine.view': [(0, name) for name in ('x', 'vx', 'sxx', 'pressure', 'energy', 'plasticStrain')],
         'McaGridEngine.probeLine': [((0., 1.1 * D), (3 * D, 1.2 * D), 20)],
         'McaGridEngine.gauge': [(0, )],

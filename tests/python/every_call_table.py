@@ -27,7 +27,7 @@ ALSO_CALLED = {
 BY_NAME = {
         'block': 0, 'side': 'left', 'start': 0, 'end': -1, 'nodes': [0, 1], 'direction': (1., 0.), 'velocity': (1., 0.), 'at': (1e-3, 1e-3), 'period': 1,
         'number': 0, 'n': 5, 'ids': [0, 1], 'normal': (1., 0.), 'name': 'vx', 'i': 1, 'j': 1, 'what': 'x', 'xs': [10e-3, 11e-3, 12e-3],
-        'ys': [0., 1e-3, 2e-3], 'value': 1e6, 'volumeRatio': 0.95, 'plasticStrain': 0.1, 'rate': 10., 'temperature': 400., 'threads': 1
+        'ys': [0., 1e-3, 2e-3], 'value': 1e6, 'names': ['x'], 'volumeRatio': 0.95, 'plasticStrain': 0.1, 'rate': 10., 'temperature': 400., 'threads': 1
 }
 BY_TYPE = {'int': 0, 'float': 1., 'str': '', 'bool': True, 'object': 1.}
 ARGUMENTS = {

@@ -35,6 +35,27 @@ def test_everyMemberHasADocstringAndEveryNumberAUnit(plugin):
 	assert walked > 100 and not lacking, lacking
 
 
+#: when an attribute that can be set is read. 'look': the first step or call after a script could change something
+READ = re.compile(r"""[Rr]ead\ in\ every\ step | [Rr]ead\ at\ every\ look | [Oo]utput\b
+	| [Rr]ead\ when\ (bodies\ are\ gathered | a\ body\ is\ taken\ over | automata\ are\ taken\ in | strengths\ are\ drawn | links\ are\ made | the\ row\ is\ tied | the\ first\ block\ is\ added)""", re.X)
+
+
+def readWhen(member):
+	"""True for what cannot be set, too: nobody reads it."""
+	return not isinstance(member, property) or member.fset is None or bool(READ.search(re.sub(r':y\w+:`[^`]*`', '', member.__doc__ or '')))
+
+
+def test_everyAttributeSaysWhenItIsRead(plugin):
+	settable = [(name, key, m) for name, key, m in members(plugin) if isinstance(m, property) and m.fset]
+	assert len(settable) > 60
+	assert [(name, key) for name, key, m in settable if not readWhen(m)] == []
+
+
+def test_aNewAttributeMustSayIt():
+	assert not readWhen(property(lambda s: 1, lambda s, v: None, doc='how deep [m]'))
+	assert readWhen(property(lambda s: 1, lambda s, v: None, doc='how deep [m]; read in every step')) and readWhen(property(lambda s: 1, doc='how deep [m]'))
+
+
 def test_everyClassHasADocstring(plugin):
 	for name in plugin.classes:
 		assert len(getattr(plugin, name).__doc__.strip()) > 20, name

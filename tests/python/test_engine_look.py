@@ -155,6 +155,98 @@ def test_everyFieldHasOneNumberPerBody(plugin):
 		e.field('speed')
 
 
+def test_severalFieldsAreThoseOfOneLook(plugin):
+	ids = scene.impact()
+	e = scene.engine()
+	from yade import O
+	O.run(60, True)
+	names = ['pressure', 'x', 'links', 'equivalentStress', 'material']
+	found = e.fields(['ids', *names])
+	assert list(found) == ['ids', *names] and found['ids'].dtype.kind == 'i' and np.array_equal(found['ids'], np.sort(np.concatenate(ids)))
+	for name in names: assert np.array_equal(found[name], e.field(name)), name
+	assert e.fields([]) == {} and list(e.fields(('x', 'x'))) == ['x']
+	with pytest.raises(RuntimeError, match="McaEngine.fields: names: name = 'speed' is unknown; it must be one of angle"):
+		e.fields(['x', 'speed'])
+	for wrong in ('x', None, 5, [5], ['x', None], {'x': 1}):
+		with pytest.raises(TypeError, match='McaEngine.fields: names must be a list or tuple of texts'):
+			e.fields(wrong)
+
+
+READS = {'field': lambda e: e.field('vx'), 'fields': lambda e: e.fields(['vx'])['vx'], 'momentum': lambda e: e.momentum[0], 'energies': lambda e: e.energies()['momentumX']}
+
+
+@pytest.mark.parametrize('read', sorted(READS))
+def test_aChangeByAHandleThatWasKeptIsRead(plugin, read):
+	"""Nothing tells the engine that a state has changed: each look compares all bodies. Before the first step, after steps, twice."""
+	from yade import O
+	ids = scene.block(6, 6)
+	e = scene.engine(1e-9)
+	states = [O.bodies[int(i)].state for i in ids]
+	mass = states[7].mass
+	for speed in 3., -2., 5.:
+		states[7].vel = (speed, 0, 0)
+		now = READS[read](e)
+		assert (now == pytest.approx(mass * speed) if np.isscalar(now) else (now[7] == speed and abs(now).max() == abs(speed)))
+		states[7].vel = (0, 0, 0)
+		assert not np.any(READS[read](e))
+		O.run(2, True)
+
+
+@pytest.mark.parametrize('attribute, value, quantity', [('pos', 1e-6, 'x'), ('vel', 1., 'vx'), ('temperature', 301., 'temperature'), ('plasticStrain', 0.01, 'plasticStrain'), ('strength', 1.5, 'strength')])
+def test_everyKindOfChangeIsReadAtOnce(plugin, attribute, value, quantity):
+	from yade import O
+	ids = scene.block(6, 6)
+	e = scene.engine(1e-9)
+	O.run(2, True)
+	state = O.bodies[int(ids[7])].state
+	wanted = getattr(state, attribute) + (value, 0, 0) if attribute in ('pos', 'vel') else value
+	setattr(state, attribute, wanted)
+	assert e.fields([quantity])[quantity][7] == (wanted[0] if attribute in ('pos', 'vel') else wanted)
+
+
+@pytest.mark.parametrize('attribute, value', [('vel', (7., 0, 0)), ('pos', (1e-6, 0, 0)), ('angVel', (0, 0, 5.)), ('temperature', 333.), ('plasticStrain', 0.02)])
+def test_aChangeWhileTheBodiesAreNotUpToDateIsToldAsLost(plugin, attribute, value):
+	"""Unless reload() follows it. Which step would have met it is chance, so it is not taken over silently."""
+	from yade import O
+	ids = scene.block(6, 6, velocity=(5., 1.))
+	scene.engine(1e-9)
+	state = O.bodies[int(ids[7])].state
+	O.run()
+	while O.iter < 20: pass
+	setattr(state, attribute, value)
+	meets = O.iter + 20
+	while O.iter < meets: pass
+	O.pause()
+	with pytest.raises(RuntimeError, match='body %d was changed by a script while the loop ran in the background' % ids[7]):
+		O.run(1, True)
+	assert abs(np.array(getattr(state, attribute)) - value).max() > 1e-9  # what the engine holds
+	O.run(3, True)
+
+
+def test_aBodyKeepsItsOrientationAndTurns(plugin):
+	"""The quaternion is made anew only when the angle has changed."""
+	from yade import O
+	ids = scene.block(6, 6)
+	e = scene.engine(1e-9)
+	for i in ids.tolist(): O.bodies[i].state.angVel = (0, 0, 1e4)
+	for n in (1, 3, 1):
+		O.run(n, True)
+		angle = scene.pick(e, ids, 'angle')
+		w = np.array([O.bodies[int(i)].state.ori[3] for i in ids])
+		assert angle.min() > 0 and w == pytest.approx(np.cos(0.5 * angle), abs=1e-15)
+
+
+def test_theCouplersSumsCountAChangeByAHandle(plugin):
+	from yade import O
+	from yade_mca import scenes
+	s = scenes.penetration(thickness=10e-3, spacing=2e-3)
+	O.run(3, True)
+	before, i = s.couplers[0].energies()['momentumX'], int(s.ids['rod'][-1])
+	state = O.bodies[i].state
+	state.vel = (100., state.vel[1], 0)
+	assert s.couplers[0].energies()['momentumX'] - before == pytest.approx(100. * state.mass, rel=1e-6)
+
+
 def test_energyEntries(plugin):
 	"""O.energy holds each item of the account under a name of its own; the sum of all is the kinetic energy at the start."""
 	from yade import O

@@ -1,5 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""No attribute, method or function takes a bad value silently, crashes, hangs, or refuses it in words that do not help. The calls are made by every_call.py."""
+"""No attribute, method or function takes a bad value silently, crashes, hangs, or refuses it in words that do not help. The calls are made by every_call.py.
+
+While the loop runs in the background only crashes and hangs are judged. Which step meets a value is chance there: a state that is set may be written over before any step has read it (told as lost when it is, which
+needs another writing), a step may begin between the call and the look at positions, and a loop that is held still, by a PyRunner that waits, is another moment: its bodies are up to date. That moment, changes while the bodies are not, and what is told
+of them stand in test_engine_look.py, where the loop has certainly made a step before the change and makes one after it.
+"""
 import json
 import os
 import subprocess

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from yade_mca import measure
 from yade_mca.measure import geometricLength, momentumSettled, rearClearance, rodMeasure
 
 
@@ -103,3 +104,11 @@ def test_momentum_settles():
 	p = 100 * np.exp(-t / 1e-5)
 	assert not momentumSettled(t[:30], p[:30], 1e-5) and momentumSettled(t, p, 1e-5) and not momentumSettled(t[:5], p[:5], 1e-5)
 	assert not momentumSettled(t, 100 - 1e5 * t, 1e-5)
+
+
+@pytest.mark.parametrize('n', [1, 2, 3, 20, 21, 1000])
+def test_quantileIsNumpys(n):
+	rng = np.random.default_rng(n)
+	for q in (0., 0.01, 0.3, 0.5, 0.95, 0.99, 1.):
+		v = rng.normal(size=n)
+		assert measure._quantile(v, q) == np.quantile(v, q)

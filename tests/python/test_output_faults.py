@@ -162,3 +162,91 @@ def test_anErrorNamesTheFile(tmp_path):
 	with pytest.raises(OSError) as e:
 		writeAtomically(tmp_path / 'no' / 'file', 'x')
 	assert e.value.filename == str(tmp_path / 'no' / 'file')
+
+
+def test_paraviewFilesFollowLinksAndStayDevices(tmp_path):
+	vtk_output = pytest.importorskip('yade_mca.vtk_output')
+	pytest.importorskip('vtkmodules.vtkIOXML')
+	(tmp_path / 'there').mkdir()
+	link = tmp_path / 'a.vtp'
+	link.symlink_to('there/file.vtp')
+	for n in 2, 3:  # a link to nothing yet, then to a file
+		vtk_output.writeAutomata(link, [[0., k] for k in range(n)])
+		assert link.is_symlink() and b'NumberOfPoints="%d"' % n in (tmp_path / 'there' / 'file.vtp').read_bytes()
+	assert os.listdir(tmp_path / 'there') == ['file.vtp']
+	full = tmp_path / 'full.vtp'
+	full.symlink_to('/dev/full')
+	with pytest.raises(OSError) as e:
+		vtk_output.writeAutomata(full, [[0., 0.]])
+	assert e.value.errno == 28 and e.value.filename == str(full) and full.is_symlink()
+
+
+# ---- other tasks on a full disk
+
+
+@pytest.mark.parametrize('words, files, said', [
+        (['bench', '--only', 'elasticWave'], ['bench.json', 'bench.jsonl', 'bench-front.png', 'bench-size.png', 'bench-phases.png'], 'elasticWave/'),
+        (['stress', '--only', 'limit/automata/stretched10%'], ['stress.txt', 'stress.inc'], 'held 1, refused 0, failed 0'),
+])
+def test_aFullDiskCostsNoNumberOfOtherTasks(tmp_path, monkeypatch, capsys, words, files, said):
+	"""What was measured (of bench: replaced here by what runs return) is shown and reported, and every missing file named."""
+	from test_bench import made
+	from yade_mca.tasks import bench_plan, bench_process, cli
+	monkeypatch.setattr(bench_process, 'measured', lambda j: dict(made(j['case'], j['solver'], j['n'], 1., error=.1), name=bench_plan.name(j)))
+	out = tmp_path / 'out'
+	out.mkdir()
+	for name in files:
+		(out / name).symlink_to('/dev/full')
+	assert cli.main([*words, '--quick', '--out', str(out), '--json', str(tmp_path / 'r.json')]) == 1
+	text, err = capsys.readouterr()
+	assert said in text and 'Traceback' not in err
+	assert json.loads((tmp_path / 'r.json').read_text())['cases']
+	last = err.strip().splitlines()[-1]
+	assert '%d files could not be written' % len(files) in last
+	for name in files:
+		assert "'%s': No space left on device" % (out / name) in last
+	assert sorted(os.listdir(out)) == sorted(files)
+
+
+def test_whatChildrenHandBackNeedsNoDisk():
+	"""Not even for temporary files."""
+	from yade_mca.tasks.attempts import inMemory
+	with inMemory('x') as path:
+		subprocess.run(['/usr/bin/python3', '-c', 'import sys; open(sys.argv[1], "a").write("y" * 100000)', path], check=True)
+		assert os.path.getsize(path) == 100000 and Path(path).read_text() == 'y' * 100000
+		assert os.readlink(path).startswith('/memfd:')
+		writeAtomically(path, 'z')
+		assert Path(path).read_text().endswith('yz')
+	assert not os.path.exists(path)
+
+
+def test_aFullDiskCostsNoNumberOfTableAndStudy(tmp_path, monkeypatch, capsys):
+	"""Pictures and results go where no byte fits; runs, replaced here by their results, are in the table and in the report all the same."""
+	from yade_mca.tasks import cli, study, table1
+	folder = tmp_path / 'out'
+	folder.mkdir()
+	names = [c for c in table1.CASES] + ['wall', 'energyError'] + ['at%dus/%s' % (t, k) for t in study.TIMES for k in study.LOSSES]
+	made = lambda words: dict(cases=[dict(name='T%s/%s/%s' % (words[words.index('--thickness') + 1], 'x', n), value=0.1 + 0.01 * k) for k, n in enumerate(names)])
+	monkeypatch.setattr(table1, 'child', lambda words, threads: made(words))
+	for name in 'table1.png', 'table1.json', 'convergence.png', 'study-convergence.json':
+		(folder / name).symlink_to('/dev/full')
+	for words, files in (['table1'], ['table1.json', 'table1.png']), (['study', 'convergence'], ['convergence.png', 'study-convergence.json']):
+		report = tmp_path / 'report.json'
+		assert cli.main([*words, '--out', str(folder), '--json', str(report)]) == 1
+		text, err = capsys.readouterr()
+		assert len(json.loads(report.read_text())['cases']) > 8 and ('Alekseevskii' in text or 'T25' in text or 'study/' in text)
+		last = err.strip().splitlines()[-1]
+		assert '2 files could not be written' in last and all("'%s': No space left on device" % (folder / f) in last for f in files)
+
+
+def test_aRunThatFailsCostsNoOtherOfTheTable(tmp_path, monkeypatch, capsys):
+	from yade_mca.tasks import cli, table1
+
+	def child(words, threads):
+		if words[words.index('--thickness') + 1] in ('40', '40.0'): raise RuntimeError('a picture of this')
+		return dict(cases=[dict(name='T/x/' + n, value=0.1) for n in table1.CASES])
+
+	monkeypatch.setattr(table1, 'child', child)
+	assert cli.main(['table1', '--json', str(tmp_path / 'r.json')]) == 1
+	assert 'a picture of this' in capsys.readouterr().err
+	assert len(json.loads((tmp_path / 'r.json').read_text())['cases']) >= 10

@@ -154,3 +154,58 @@ def test_bodies_have_the_mass_inertia_and_freedom_of_discs(plugin):
 	assert not O.bodies[held[0]].dynamic
 	with pytest.raises(PackingError, match='velocity'):
 		packings.addBodies(p, O.materials[0], velocity=(1, 2, 3))
+
+
+def rest(road):
+	"""Bodies that an engine has moved and pressed."""
+	import engine_scene, law2_scene
+	from yade import O
+	from yade.wrapper import McaEngine
+	if road == 'engine':
+		ids = np.concatenate(engine_scene.impact(speed=100.))
+		O.engines = [McaEngine()]
+	else:
+		ids = np.array(law2_scene.impact(speed=100.))
+		law2_scene.engines('law2', 2e-8)
+	while max(O.bodies[int(i)].state.pressure for i in ids) < 1e8:
+		O.run(20, True)
+	return ids
+
+
+@pytest.mark.parametrize('road', ['engine', 'law2'])
+def test_resetStatesLetsANewEngineGoOn(plugin, road):
+	"""Refused before, accepted after; motion stays, results go."""
+	from yade import O
+	from yade.wrapper import McaEngine
+	ids = rest(road)
+	kept = lambda: [(tuple(b.state.pos), tuple(b.state.vel), tuple(b.state.angVel), tuple(b.state.ori), b.state.mass, b.state.blockedDOFs, b.state.strength) for b in O.bodies]
+	O.bodies[int(ids[0])].state.blockedDOFs = 'xyzXYZ'
+	before = kept()
+	O.engines, O.dt = [McaEngine(adaptive=False)], 1e-9
+	with pytest.raises(RuntimeError, match='resetStates' if road == 'engine' else 'McaDensity has moved it'):
+		O.run(1, True)
+	packings.resetStates(ids.tolist())
+	assert kept() == before
+	s = O.bodies[int(ids[3])].state
+	assert (s.pressure, s.volumeRatio, s.plasticStrain, s.brokenLinks, s.dissipated, s.temperature) == (0, 1, 0, 0, 0, O.bodies[int(ids[3])].material.referenceTemperature)
+	O.engines = [McaEngine(adaptive=False)]
+	O.run(20, True)
+	assert O.iter > 20 and all(np.isfinite(b.state.pos).all() for b in O.bodies)
+
+
+def test_resetStatesOfTheEngineThatMovedThemIsRefused(plugin):
+	from yade import O
+	ids = rest('engine')
+	packings.resetStates(ids)
+	with pytest.raises(RuntimeError, match='it is a result of the law and cannot be prescribed'):
+		O.run(1, True)
+
+
+@pytest.mark.parametrize('wrong', [None, 5, 'ab', [0.5], [-1], [10**6], [[1]], [[1], [2, 3]], ['x'], [True], {1: 2}])
+def test_resetStatesRefusesWhatIsNoAutomaton(plugin, wrong):
+	from yade import O
+	ids = packings.addBodies(packings.hexagonal(1e-3, packings.Rectangle((0, 0), (3e-3, 3e-3))), '4340')
+	states = [O.bodies[i].state for i in ids]
+	with pytest.raises(packings.PackingError, match='ids'):
+		packings.resetStates(ids + wrong if wrong in ([-1], [10**6]) else wrong)
+	assert all(O.bodies[i].state is s or O.bodies[i].state == s for i, s in zip(ids, states))

@@ -334,3 +334,27 @@ def test_nothingFliesThroughTheInsideOfABody(plugin):
 	while O.time < 12e-6:  # 6 mm if nothing stopped it
 		O.run(20, True)
 	assert s.field('shot', 'x')[0] - hole[0] < 1.5 * d and s.automata.momentum[0] == pytest.approx(momentum, rel=1e-9)
+
+
+@pytest.mark.parametrize('where', ['engine', 'functor'])
+def test_restartRefusesEnginesThatTheTaskDoesNotMake(plugin, tmp_path, capsys, where):
+	"""A PyRunner in a checkpoint would run Python: nothing of such a scene is made, let alone run; who trusts the file says so."""
+	from yade import O, wrapper
+	from yade_mca import checkpoint, impact, scenes
+	run = impact.Impact(scenes.penetration(thickness=16e-3, spacing=4e-3), until=12e-6)
+	run.advance()
+	ran = tmp_path / 'ran'
+	if where == 'engine': O.engines = O.engines + [wrapper.PyRunner(command="open(%r, 'w')" % str(ran), iterPeriod=1)]
+	else: O.engines = O.engines + [wrapper.InteractionLoop([wrapper.Ig2_Sphere_Sphere_ScGeom()], [], [])]
+	path = tmp_path / 'c'
+	run.save(str(path), dict(options={}))
+	O.reset()
+	with pytest.raises(checkpoint.CheckpointError, match='PyRunner' if where == 'engine' else 'Ig2_Sphere_Sphere_ScGeom|InteractionLoop'):
+		impact.Impact.load(str(path))
+	assert len(O.engines) == 0 and len(O.bodies) == 0
+	assert cli.main(['penetration', '--restart', str(path), '--out', str(tmp_path / 'out')]) == 2
+	assert 'does not make' in capsys.readouterr().err
+	assert not ran.exists()
+	checkpoint.read(str(path))
+	assert len(O.engines) > 1
+	O.reset()

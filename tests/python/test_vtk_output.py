@@ -78,7 +78,8 @@ def test_nothing_is_left_behind_when_writing_fails(tmp_path, monkeypatch):
 
 @pytest.mark.skipif(not os.path.exists('/dev/full'), reason='no /dev/full')
 def test_full_disk_is_an_error(tmp_path, monkeypatch):
-	monkeypatch.setattr(vtk_output.tempfile, 'mkstemp', lambda suffix, prefix, dir: (os.open('/dev/full', os.O_WRONLY), str(tmp_path / 'full')))
+	from yade_mca.tasks import report
+	monkeypatch.setattr(report.tempfile, 'mkstemp', lambda suffix, prefix, dir: (os.open('/dev/full', os.O_WRONLY), str(tmp_path / 'full')))
 	os.symlink('/dev/full', tmp_path / 'full')
 	with pytest.raises(OSError, match='disk full'):
 		vtk_output.writeAutomata(tmp_path / 'a.vtp', np.random.default_rng(0).random((20000, 2)))

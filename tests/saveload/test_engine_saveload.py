@@ -42,3 +42,14 @@ def test_continuesBitIdentically(tmp_path, kind, form, first):
 	whole = (tmp_path / 'whole').read_text()
 	assert whole == (tmp_path / 'parts').read_text()
 	assert "('brokenLinks', 0)" not in whole and "('contacts', 0)" not in whole
+
+
+def test_savingLeavesNothingBehind(tmp_path):
+	"""What was put into the file must not come back when attributes are set later."""
+	process("""
+build('plain'); O.run(60, True); O.save('s.yade'); O.run(60, True)
+e = O.engines[0]
+before = digest()
+e.updateAttrs(dict(dtFactor=.3))
+assert e.counters()['steps'] == 120 and digest() == before
+""", tmp_path)

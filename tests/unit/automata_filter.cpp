@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The exchange of volume in flowing material: stripes fade at the stated rate, smooth fields stay, the sum of J is kept.
 #include "automata_scene.hpp"
-#include "automata/volume_filter.hpp"
+#include "kernels/automaton/filter.hpp"
 #include <numeric>
 using namespace automatatest;
 
@@ -24,7 +24,7 @@ struct Fade {
 		s.build(list, { m }, o);
 		s.computeForces();
 		for (int i = 0; i < n * n; i++)
-			s.store.jOff[s.indexOf(i)] *= 1. + 0.01 * std::cos(2 * M_PI * (i / n) / wave);
+			s.store.factor[s.indexOf(i)] *= 1. + 0.01 * std::cos(2 * M_PI * (i / n) / wave);
 		s.moved();
 		s.computeForces();
 		const size_t middle = s.indexOf(n / 2 * n + n / 2);

@@ -50,7 +50,7 @@ inline std::vector<Automaton> packing(double d, int nx, int ny, const Material& 
 			Automaton    a;
 			const double u = (i + 0.5 * (j & 1)) * d, v = 0.86602540378443864676 * j * d;
 			a.x = at.x + c * u - s * v, a.y = at.y + s * u + c * v;
-			a.mass = m.eos.rho0 * Lattice<2>::cell(d), a.inertia = 0.125 * a.mass * d * d, a.diameter = d;
+			a.mass = m.eos.rho0 * Lattice::cell(d), a.inertia = 0.125 * a.mass * d * d, a.diameter = d;
 			a.id = id++, a.material = material, a.group = group;
 			out.push_back(a);
 		}

@@ -20,6 +20,7 @@ import json
 import os
 
 from . import bench_google, bench_plan, bench_process, bench_results, environment, registry
+from .attempts import Attempts
 from .registry import UsageError
 from .report import Report, jsonable, writeAtomically
 
@@ -55,7 +56,7 @@ def line(r):
 
 def kept(path, only, everything=False):
 	"""(records, kernels) of an older result that this run does not renew."""
-	if not os.path.exists(path) or not (only or everything):
+	if not os.path.isfile(path) or not (only or everything):
 		return [], {}
 	with open(path) as f:
 		old = json.load(f)
@@ -81,14 +82,13 @@ def run(args, report, progress):
 	jobs = bench_plan.plan(args.quick, args.only, environment.cores())
 	path = args.out and os.path.join(args.out, 'bench.json')
 	old, kernels = kept(path, args.only, args.fastest) if path else ([], {})
-	records = []
+	records, attempt = [], Attempts('bench')
 	with progress(len(jobs), 'bench', 'run') as bar:
 		for j in jobs:
 			records.append(bench_process.measured(j))
 			print(line(records[-1]), flush=True)
 			if args.out:
-				with open(os.path.join(args.out, 'bench.jsonl'), 'a' if len(records) > 1 else 'w') as f:
-					f.write(json.dumps(jsonable({k: v for k, v in records[-1].items() if k != 'signal'})) + '\n')
+				attempt(os.path.join(args.out, 'bench.jsonl'), append, args.out, records)
 			bar.update(len(records))
 	bench_results.giveErrors(records)
 	for r in records:
@@ -102,20 +102,28 @@ def run(args, report, progress):
 	bench_results.add(report, records)
 	report.extra.update(command=command(args), records=fastest(old, records), kernels=kernels, remarks=remarks)
 	if args.out:
-		made = written(args, fastest(old, records), kernels, remarks)
-		print('%s are in %s' % (', '.join(made), os.path.abspath(args.out)))
+		made = written(args, fastest(old, records), kernels, remarks, attempt)
+		print('%s are in %s' % (', '.join(made) or 'no files', os.path.abspath(args.out)))
+		attempt.finish()
 
 
-def written(args, records, kernels, remarks):
+def append(folder, records):
+	"""The last record as a line of bench.jsonl; the first one begins the file anew."""
+	with open(os.path.join(folder, 'bench.jsonl'), 'a' if len(records) > 1 else 'w') as f:
+		f.write(json.dumps(jsonable({k: v for k, v in records[-1].items() if k != 'signal'})) + '\n')
+
+
+def written(args, records, kernels, remarks, attempt):
 	"""Writes records, result and pictures of all cases that are in the folder now; returns the names of the files."""
 	from . import bench_plots
 	records, whole = jsonable(records), Report('bench')
 	bench_results.add(whole, records)
 	bench_google.add(whole, kernels)
 	whole.extra.update(command=command(args), records=records, kernels=kernels, remarks=remarks, wall=sum(r.get('wall') or 0. for r in records))
-	writeAtomically(os.path.join(args.out, 'bench.jsonl'), ''.join(json.dumps(r) + '\n' for r in records))
-	whole.write(os.path.join(args.out, 'bench.json'))
-	return ['bench.jsonl', 'bench.json', *bench_plots.everything(args.out, records)]
+	lines = ''.join(json.dumps(r) + '\n' for r in records)
+	files = {'bench.json': whole.write, 'bench.jsonl': lambda path: writeAtomically(path, lines)}
+	files.update({name: lambda path, make=make: make(path, records) for name, make in bench_plots.PICTURES.items()})
+	return [name for name, make in files.items() if attempt(path := os.path.join(args.out, name), make, path)]
 
 
 def command(args):

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Pictures of `bench` from its records: time against error, cost against size, cost by phase."""
-import os
 
 from .. import plots
 from .bench_plan import variants
@@ -96,7 +95,5 @@ def phases(path, records):
 		return plots.save(figure, path)
 
 
-def everything(folder, records):
-	"""Writes all pictures; returns their names."""
-	made = dict(front=front, size=size, phases=phases)
-	return [os.path.basename(make(os.path.join(folder, 'bench-%s.png' % k), records)) for k, make in made.items()]
+#: name -> function(path, records) that draws it
+PICTURES = {'bench-front.png': front, 'bench-size.png': size, 'bench-phases.png': phases}

@@ -8,9 +8,9 @@ import json
 import os
 import subprocess
 import sys
-import tempfile
 import time
 
+from .attempts import inMemory
 from .bench_plan import name
 
 MODULES = dict(elasticWave='bench_waves', plasticShock='bench_waves', taylorBar='bench_bodies', plateWave='bench_bodies', penetration='bench_bodies', law='bench_law')
@@ -51,14 +51,13 @@ def execute(job):
 def measured(job):
 	"""Runs a job in a new process and returns its record; a process that broke gives a record with `failed`."""
 	environment = dict(os.environ, OMP_NUM_THREADS=str(job['threads']), OMP_WAIT_POLICY='passive', GOMP_SPINCOUNT='1000')
-	with tempfile.TemporaryDirectory() as folder:
-		path = os.path.join(folder, 'record.json')
+	with inMemory('record.json') as path:
 		try:
 			done = subprocess.run([sys.executable, '-m', __spec__.name, json.dumps(dict(job, started=time.time())), path], env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, timeout=LIMIT)
 			said = (done.stderr.strip().splitlines() or ['status %d' % done.returncode])[-1]
 		except subprocess.TimeoutExpired:
 			said = 'stopped after %d s' % LIMIT
-		if not os.path.exists(path):
+		if not os.path.getsize(path):
 			return dict(job, name=name(job), failed=said)
 		with open(path) as f:
 			record = json.load(f)

@@ -46,7 +46,7 @@ def check(args):
 		except checkpoint.CheckpointError as e:
 			raise UsageError('--restart: %s' % e) from None
 		for k, v in args.saved['options'].items():
-			setattr(args, k, v)
+			if k.replace('_', '-') in options.SCENE: setattr(args, k, v)
 	if args.no_files or args.out:
 		return
 	args.out = os.path.dirname(os.path.abspath(args.restart)) if args.restart else os.path.join('results', '%s_%gmm' % (results.name(args).replace('/', '_'), args.spacing))
@@ -163,5 +163,4 @@ def finish(run, args, report, output, keeper, began, wall):
 	output.attempt(summary, report.write, summary)
 	print('%s, ParaView files (penetration.pvd), checkpoint and summary.json are in %s' % (
 	        ', '.join(['pictures', *['animation (penetration.gif)'] * (not args.no_animation), *['page (%s)' % PAGE] * (not args.no_page)]), os.path.abspath(args.out)))
-	if output.failures:
-		raise OSError('%d files could not be written: %s' % (len(output.failures), '; '.join("'%s': %s" % f for f in output.failures.items())))
+	output.attempt.finish()

@@ -51,7 +51,7 @@ def jsonable(x):
 def writeAtomically(path, data):
 	"""Writes `data` (bytes or str) to `path` so that a reader finds the old file or the whole new one, never a part.
 
-	Links are followed. What is no regular file (a device, a pipe) is written as it stands. Raises OSError that names `path`.
+	data may also be a function that fills the file with the name it gets. Links are followed. What is no regular file (a device, a pipe) is written as it stands. Raises OSError that names `path`.
 	"""
 	data = data.encode() if isinstance(data, str) else data
 	try:
@@ -74,6 +74,7 @@ def isPlain(path):
 
 
 def _writeInto(path, data):
+	if callable(data): data = _filled(data)
 	if sys.stdout: sys.stdout.flush()  # which `path` may be
 	handle = os.open(path, os.O_WRONLY | os.O_APPEND)
 	with os.fdopen(handle, 'wb', buffering=0) as f:
@@ -81,11 +82,19 @@ def _writeInto(path, data):
 			data = data[f.write(data):]
 
 
+def _filled(fill):
+	"""What fill(name) writes."""
+	with tempfile.NamedTemporaryFile(suffix='.part') as f:
+		fill(f.name)
+		return f.read()
+
+
 def _replace(path, data):
-	handle, temporary = tempfile.mkstemp(prefix='.' + os.path.basename(path) + '.', dir=os.path.dirname(path))
+	handle, temporary = tempfile.mkstemp('.part', '.' + os.path.basename(path) + '.', os.path.dirname(path))  # VTK cuts '_' off the end of a name
 	try:
 		with os.fdopen(handle, 'wb') as f:
-			f.write(data)
+			if callable(data): data(temporary)
+			else: f.write(data)
 			f.flush()
 			os.fsync(f.fileno())
 		mask = os.umask(0)

@@ -3,6 +3,7 @@
 import os
 
 from . import registry
+from .attempts import Attempts
 from .penetration_options import seed
 from .registry import UsageError
 from .report import writeAtomically
@@ -67,5 +68,8 @@ def run(args, report, progress):
 	print('\nheld %d, refused %d, failed %d' % (count['held'], count['refused'], count['failed']))
 	if args.out:
 		from .stress_doc import page
-		writeAtomically(os.path.join(args.out, 'stress.txt'), text + '\n')
-		writeAtomically(os.path.join(args.out, 'stress.inc'), page(report.asDict()))
+		attempt = Attempts('stress')
+		for name, made in ('stress.txt', text + '\n'), ('stress.inc', page(report.asDict())):
+			path = os.path.join(args.out, name)
+			attempt(path, writeAtomically, path, made)
+		attempt.finish()

@@ -2,15 +2,14 @@
 """Runs stress cases in child processes, so that a case that kills its process costs that case only: start and outcome of each go through a file."""
 import json
 import math
-import os
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 from dataclasses import asdict
 
 from . import stress_impact, stress_lattice, stress_limit, stress_long, stress_material, stress_random, stress_step
+from .attempts import inMemory
 from .stress_judge import FAILED, Outcome, judge
 
 GROUPS = (stress_step, stress_limit, stress_impact, stress_material, stress_lattice, stress_long, stress_random)
@@ -81,11 +80,8 @@ class Children:
 
 	def __iter__(self):
 		left = list(self.names)
-		with tempfile.TemporaryDirectory() as folder:
-			while left:
-				path = os.path.join(folder, 'outcomes')
-				open(path, 'w').close()
-				log = open(os.path.join(folder, 'log'), 'w+')
+		while left:
+			with inMemory('outcomes') as path, inMemory('log') as said, open(said, 'w+') as log:
 				command = [sys.executable, '-m', __name__, path, '1' if self.quick else '0', str(self.seed)]
 				process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=log, stderr=log, text=True)
 				process.stdin.write('\n'.join(left))
@@ -93,7 +89,6 @@ class Children:
 				for outcome in self.follow(process, path, log):
 					left.remove(outcome.name)
 					yield outcome
-				log.close()
 
 	def follow(self, process, path, log):
 		"""Outcomes of one child as they come; the last one is that of the case it died in."""

@@ -12,6 +12,7 @@ import os
 import numpy as np
 
 from . import penetration_options as options, penetration_report as results, registry
+from .attempts import Attempts
 from .cli import positive
 from .report import Report
 from .table1 import runAll
@@ -59,7 +60,7 @@ def do(jobs, args, progress, label):
 	return {k: r['error'] if r.get('error') else losses(r) for k, r in found.items()}
 
 
-def convergence(report, args, progress):
+def convergence(report, args, progress, attempt):
 	spacings = [args.thickness / 12, 1., 0.5] + ([0.25] if args.fine else [])
 	jobs = {(d, mode): dict(spacing=d, mode=mode, ends='fixed') for d in spacings for mode in ('coupled', 'mca')}
 	found = do(jobs, args, progress, 'convergence')
@@ -67,7 +68,8 @@ def convergence(report, args, progress):
 		add(report, 'study/convergence/d%.3g/%s' % (d, mode), f)
 	if args.out and not any(isinstance(f, str) for f in found.values()):
 		curves = {(mode, t, k): [found[d, mode][0][t, k] for d in spacings] for mode in ('coupled', 'mca') for t in TIMES for k in LOSSES}
-		picture(os.path.join(args.out, 'convergence.png'), spacings, curves)
+		path = os.path.join(args.out, 'convergence.png')
+		attempt(path, picture, path, spacings, curves)
 
 
 def add(report, name, f):
@@ -80,7 +82,7 @@ def add(report, name, f):
 	report.add(name + '/energyError', f[2])
 
 
-def seeds(report, args, progress):
+def seeds(report, args, progress, attempt):
 	jobs = {(mode, n): dict(mode=mode, seed=n, ends='fixed') for mode in ('coupled', 'mca') for n in SEEDS}
 	found = do(jobs, args, progress, 'seeds')
 	values = {}
@@ -108,15 +110,16 @@ def label(variant):
 	return ', '.join('%s %s' % (k.replace('_', ' '), v) for k, v in variant.items()) or 'default'
 
 
-def variants(report, args, progress):
+def variants(report, args, progress, attempt):
 	found = do({label(v): v for v in VARIANTS}, args, progress, 'options')
 	for name, f in found.items():
 		add(report, 'study/options/' + name.replace(' ', '_'), f)
 	if args.out:
-		bars(os.path.join(args.out, 'options.png'), found)
+		path = os.path.join(args.out, 'options.png')
+		attempt(path, bars, path, found)
 
 
-def width(report, args, progress):
+def width(report, args, progress, attempt):
 	jobs = {'coupled': dict(mode='coupled', width=400., ends='fixed'), 'coupled60': dict(mode='coupled', width=400., automata_width=60., ends='fixed'),
 	        'mca': dict(mode='mca', automata_width=400., ends='fixed')}
 	found = {}
@@ -176,9 +179,13 @@ def run(args, report, progress):
 		from . import penetration_doc
 		print('made from', ', '.join(penetration_doc.write(args.doc)) or 'nothing')
 		return
+	attempt = Attempts('study')
 	for part in args.parts:  # a report of its own each, for its file and its time
 		own = Report('study ' + part)
-		{'convergence': convergence, 'seeds': seeds, 'options': variants, 'width': width}[part](own, args, progress)
-		if args.out: own.write(os.path.join(args.out, 'study-%s.json' % part))
+		{'convergence': convergence, 'seeds': seeds, 'options': variants, 'width': width}[part](own, args, progress, attempt)
+		if args.out:
+			path = os.path.join(args.out, 'study-%s.json' % part)
+			attempt(path, own.write, path)
 		report.cases += own.cases
 		report.extra.update(own.extra)
+	attempt.finish()

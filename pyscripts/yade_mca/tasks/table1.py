@@ -6,10 +6,10 @@ import math
 import os
 import subprocess
 import sys
-import tempfile
 import time
 
 from . import environment, penetration_options as options, penetration_report as results, registry
+from .attempts import Attempts, inMemory
 from .cli import positive
 from .registry import UsageError
 
@@ -36,11 +36,16 @@ def check(args):
 			options.checkScene(t, args.spacing, args)
 
 
-def child(words, json_, threads):
+def child(words, threads):
 	"""Runs `penetration` in a process of its own; returns its JSON object. Raises RuntimeError with what it said when it failed."""
+	with inMemory('run.json') as path:
+		return _child(words, path, threads)
+
+
+def _child(words, json_, threads):
 	command = [sys.executable, '-m', __package__, 'penetration', *words, '--no-files', '--threads', str(threads), '--json', json_]
 	done = subprocess.run(command, env=dict(os.environ, OMP_NUM_THREADS=str(threads)), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-	if not os.path.exists(json_):
+	if not os.path.getsize(json_):
 		raise RuntimeError('%s: %s' % (' '.join(command[2:]), (done.stderr.strip().splitlines() or ['status %d' % done.returncode])[-1]))
 	with open(json_) as f:
 		return json.load(f)
@@ -50,8 +55,8 @@ def runAll(jobs, progress, label, atOnce=None, threads=1):
 	"""Runs {key: words of the command line} and returns {key: JSON object}; the longest first. A failed run has the key 'error'."""
 	atOnce = atOnce or max(1, environment.cores() // threads)
 	done = {}
-	with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(atOnce) as pool, progress(len(jobs), label, 'run') as bar:
-		started = {pool.submit(child, words, os.path.join(folder, '%d.json' % k), threads): key for k, (key, words) in enumerate(jobs.items())}
+	with concurrent.futures.ThreadPoolExecutor(atOnce) as pool, progress(len(jobs), label, 'run') as bar:
+		started = {pool.submit(child, words, threads): key for key, words in jobs.items()}
 		try:
 			for future in concurrent.futures.as_completed(started):
 				done[started[future]] = _result(future)
@@ -74,25 +79,28 @@ def run(args, report, progress):
 	began = time.perf_counter()
 	jobs = {(t, mode): options.commandLine(**dict(args.asked, thickness=t, mode=mode), longest=args.longest) for t in reversed(THICKNESSES) for mode in MODES}
 	found = runAll(jobs, progress, 'table1', args.jobs, args.threads or 1)
-	rows = {}
+	rows, failed = {}, []
 	for t in THICKNESSES:
 		for mode in MODES:
 			result = found[t, mode]
-			if result.get('error'):
-				raise RuntimeError('%g mm, %s: %s' % (t, mode, result['error']))
+			if result.get('error'): failed.append('%g mm, %s: %s' % (t, mode, result['error']))
 			for c in result['cases']:
 				if not c['name'].split('/')[2].startswith('at') or 'atExit' in c['name']:
 					report.add(**c)
+			if result.get('error'): continue
 			rows[t, mode] = {k: c['value'] for c in result['cases'] if (k := c['name'].split('/', 2)[2]) in CASES}
 			rows[t, mode].setdefault(GEOMETRIC, math.nan)  # the rod has not come through
+	if failed:  # what the others have found stands in the report
+		raise RuntimeError('; '.join(failed))
 	compare(report, rows, args)
 	report.extra['table1'] = dict(definitions=results.DEFINITIONS, rows=[dict(thickness=t, mode=m, **v, **reference(t, m)) for (t, m), v in rows.items()])
 	print(text(rows, args, time.perf_counter() - began))
 	report.add('wall', time.perf_counter() - began, unit='s')
 	if args.out:
-		picture(os.path.join(args.out, 'table1.png'), rows)
-		report.write(os.path.join(args.out, 'table1.json'))
-		print('table1.png and table1.json are in %s' % os.path.abspath(args.out))
+		attempt, folder = Attempts('table1'), os.path.abspath(args.out)
+		made = [name for name, write in (('table1.json', report.write), ('table1.png', lambda path: picture(path, rows))) if attempt(path := os.path.join(folder, name), write, path)]
+		print('%s in %s' % (' and '.join(made) or 'no files', folder))
+		attempt.finish()
 
 
 def reference(t, mode):

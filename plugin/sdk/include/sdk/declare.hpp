@@ -3,6 +3,8 @@
 #pragma once
 #include <boost/preprocessor.hpp>
 #include <sdk/attributes.hpp>
+#include <sdk/bounded.hpp>
+#include <sdk/checksum.hpp>
 #include <sdk/registry.hpp>
 
 namespace yade {
@@ -29,7 +31,9 @@ template <class T> void postSave(T&) { }
 #define YADE_SDK_EACH_DICT(r, cls, a)                                                                                                                          \
 	if constexpr (!(YADE_SDK_FLAGS(a) & ::yade::Attr::hidden)) dict_[YADE_SDK_KEY(a)] = ::boost::python::object(YADE_SDK_NAME(a));
 #define YADE_SDK_EACH_SAVE(r, cls, a)                                                                                                                          \
-	if constexpr (!(YADE_SDK_FLAGS(a) & ::yade::Attr::noSave)) archive_& ::boost::serialization::make_nvp(YADE_SDK_KEY(a), YADE_SDK_NAME(a));
+	if constexpr (!(YADE_SDK_FLAGS(a) & ::yade::Attr::noSave)) ::yade::sdk::transfer(archive_, YADE_SDK_KEY(a), YADE_SDK_NAME(a));
+#define YADE_SDK_EACH_SEAL(r, seal_, a)                                                                                                                        \
+	if constexpr (!(YADE_SDK_FLAGS(a) & ::yade::Attr::noSave)) seal_.add(YADE_SDK_NAME(a));
 #define YADE_SDK_EACH_PYTHON(r, cls, a)                                                                                                                        \
 	::yade::sdk::attribute<cls, YADE_SDK_TYPE(a), &cls::YADE_SDK_NAME(a), YADE_SDK_FLAGS(a)>(                                                              \
 	        pyClass_, YADE_SDK_KEY(a), YADE_SDK_DOC(a), BOOST_PP_STRINGIZE(YADE_SDK_TYPE(a)), BOOST_PP_STRINGIZE(YADE_SDK_DEFAULT(a)));
@@ -80,6 +84,9 @@ public:                                                                         
 		else                                                                                                                                           \
 			preSave(*this);                                                                                                                        \
 		BOOST_PP_SEQ_FOR_EACH(YADE_SDK_EACH_SAVE, cls, attrs)                                                                                          \
+		::yade::sdk::Seal seal_;                                                                                                                       \
+		BOOST_PP_SEQ_FOR_EACH(YADE_SDK_EACH_SEAL, seal_, attrs)                                                                                        \
+		::yade::sdk::checkSeal(archive_, seal_, #cls);                                                                                                 \
 		if constexpr (Archive::is_loading::value) postLoad(*this);                                                                                     \
 		else                                                                                                                                           \
 			postSave(*this);                                                                                                                       \

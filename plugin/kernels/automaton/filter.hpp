@@ -3,14 +3,14 @@
 // drift apart in volume without any force between them: only the shear stiffness of the pairs holds them together, and where the material flows
 // that is gone. Linked neighbours exchange volume by the fourth difference of J: stripes fade, smooth fields stay, the sum of J is kept.
 #pragma once
-#include "store.hpp"
+#include "links.hpp"
 
-namespace mca::automata {
+namespace mca {
 
 constexpr int filterPeriod = 8; ///< steps between two exchanges
 
 /// Exchange per fourth difference [-]: 1/64 takes a stripe of alternate rows away at once. rate [-] times c0/d is how fast stripes fade; time since the last exchange [s].
 inline double volumeExchange(double rate, double c0, double time, double d) { return min(rate * c0 * time / d, 1.) * (1. / 64.); }
-/// Who exchanges: flows, has all links with full weight, and a volume measured by them (jOff > 0).
-inline bool exchangesVolume(double eqps, int32_t flags, double jOff) { return eqps > 0. && (flags & (linkBits | halfBits)) == linkBits && jOff > 0.; }
+/// Who exchanges: flows, has all links with full weight, and a volume measured by them (factor > 0).
+inline bool exchangesVolume(double eqps, int32_t flags, double factor) { return eqps > 0. && isWhole(flags) && factor > 0.; }
 }

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Force of a pair from the pressures and stresses of both sides, and its viscosity. Formulation, equations (6) and (12).
+// r = x_j - x_i; forces are those on i, j has their negatives.
+#pragma once
+#include "deviator.hpp"
+
+namespace mca {
+
+/// Half of S r = S0 d J [m2]: with stresses kept as J times them, exactly the Cauchy stress in any homogeneous deformation. weight: 1, 1/2 on a weighted rim.
+template <class T> MCA_INLINE T pairArea(T weight, T d) { return 0.5 * weight * (d * Lattice::width(1.)) * d; }
+
+/// (12): viscous pair force over the vector i -> j [N/m]: negative (repulsive) when approaching, zero in expansion.
+/// along = r.(v_j-v_i) [m2/s]; linear = rho c1 c [Pa s/m], quadratic = rho c2 [Pa s2/m2], width = contact width [m].
+template <class T> MCA_INLINE T viscousCoefficient(T along, T invR2, double linear, double quadratic, double width)
+{
+	const T a = min(along, 0.);
+	return fma(-quadratic * a, root(invR2), linear) * a * invR2 * width;
+}
+/// What artificial viscosity needs of a pair.
+struct PairViscosity {
+	double linear, quadratic; ///< [Pa s/m], [Pa s2/m2]
+};
+MCA_INLINE PairViscosity viscosityOf(const Material& m) { return { m.viscosity.linear * m.eos.rho0 * m.eos.c0, m.viscosity.quadratic * m.eos.rho0 }; }
+/// The smaller of both sides' coefficients: a heavy neighbour must not overdamp a light automaton.
+MCA_INLINE PairViscosity viscosityOf(const Material& a, const Material& b)
+{
+	const PairViscosity p = viscosityOf(a), q = viscosityOf(b);
+	return { min(p.linear, q.linear), min(p.quadratic, q.quadratic) };
+}
+/// Pairs of these materials have the same constants.
+inline bool samePairs(const Material& a, const Material& b)
+{
+	return a.G == b.G && a.friction == b.friction && a.eos.rho0 == b.eos.rho0 && a.eos.c0 == b.eos.c0 && a.viscosity.linear == b.viscosity.linear && a.viscosity.quadratic == b.viscosity.quadratic;
+}
+
+/// Force of a link: stress = sum over both sides times the area, over r [N/m over m]; push: of the pressures.
+template <class T> MCA_INLINE Vec<T> linkForce(Vec<T> r, T along, T across, Vec<T> push)
+{
+	return { fma(along, r.x, fma(-across, r.y, -push.x)), fma(along, r.y, fma(across, r.x, -push.y)) };
+}
+/// Force of a contact; along holds its pressure and viscosity, too.
+template <class T> MCA_INLINE Vec<T> contactForce(Vec<T> r, T along, T across) { return { fma(along, r.x, -across * r.y), fma(along, r.y, across * r.x) }; }
+}

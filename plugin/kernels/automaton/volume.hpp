@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Volume of an automaton from its links and contacts, and its pressure. Formulation, equations (5) and (6), and the affine rule.
+#pragma once
+#include "../lattice.hpp"
+#include "../material.hpp"
+
+namespace mca {
+
+/// affine (default): J = det F from the links; inversePower: mean of (d/r)^dim; meanDistance: mean linear strain, as published.
+enum class VolumeRule { affine, inversePower, meanDistance };
+
+/// f(rule as a compile-time constant)
+template <class F> MCA_INLINE auto dispatch(VolumeRule rule, F&& f)
+{
+	if (rule == VolumeRule::affine) return f(std::integral_constant<VolumeRule, VolumeRule::affine> {});
+	if (rule == VolumeRule::inversePower) return f(std::integral_constant<VolumeRule, VolumeRule::inversePower> {});
+	return f(std::integral_constant<VolumeRule, VolumeRule::meanDistance> {});
+}
+/// Contacts of the affine rule follow (5): the rule by which a pair that is no link adds to a volume.
+constexpr VolumeRule ofContacts(VolumeRule rule) { return rule == VolumeRule::affine ? VolumeRule::inversePower : rule; }
+
+/// det F0 of the links that measure a volume [-]: three in a row or a star have 0.25; three with a gap have 0.17, two have 0.083 and measure none
+constexpr double minVolume = 0.2;
+
+/// What one pair adds to the sum of the volume rule [-]: (5) inversePower (d/r)^dim - 1; meanDistance r/d - 1 (the published mean linear strain).
+template <VolumeRule rule> MCA_INLINE double volumeTerm(double d, double r2)
+{
+	static_assert(Lattice::dim == 2, "powers of the distance");
+	if constexpr (rule == VolumeRule::meanDistance) return std::sqrt(r2) / d - 1.;
+	else return d * d / r2 - 1.;
+}
+/// J = Omega/Omega0 [-] from the mean of the volume terms.
+template <VolumeRule rule> MCA_INLINE double volumeRatio(double meanTerm)
+{
+	const double q = 1. + meanTerm;
+	if constexpr (rule == VolumeRule::inversePower) return 1. / q;
+	else return q * q;
+}
+/// The mean of the volume terms that makes J [-].
+template <VolumeRule rule> MCA_INLINE double meanTerm(double J)
+{
+	if constexpr (rule == VolumeRule::inversePower) return 1. / J - 1.;
+	else return std::sqrt(J) - 1.;
+}
+/// (6), one side's share h [N/m]: the repulsive pair force is (h_i + h_j) pressureShape() times the vector i -> j.
+/// omegaPerN = Omega0_i / N_i [m2], P [Pa], J [-].
+template <VolumeRule rule> MCA_INLINE double pressureShare(double P, double J, double omegaPerN)
+{
+	if constexpr (rule == VolumeRule::inversePower) return P * J * J * omegaPerN * Lattice::dim;
+	else return P * omegaPerN * Lattice::dim * std::sqrt(J);
+}
+template <VolumeRule rule> MCA_INLINE double pressureShape(double d, double invR2)
+{
+	if constexpr (rule == VolumeRule::meanDistance) return std::sqrt(invR2) / d;
+	else return d * d * invR2 * invR2;
+}
+
+/// det F of links with this sum of r (x) e_k is perArea(d) times its determinant [1/m2]: F = that sum / (spread d).
+MCA_INLINE double perArea(double d) { return 1. / (Lattice::spread * Lattice::spread * (d * d)); }
+MCA_INLINE double linkDeterminant(const Tensor<double>& sum, double perArea) { return determinant(sum) * perArea; }
+
+/// What the volume of an automaton needs of its material and diameter; law: kind of its equation of state.
+template <EosKind law> struct VolumeConstants {
+	Eos    eos;
+	double d2;      ///< diameter squared [m2]
+	double perArea; ///< see linkDeterminant() [1/m2]
+	double G43;     ///< 4 G/3 [Pa]
+	double perRho;  ///< 1/rho0 [m3/kg]
+	double clampAt; ///< volume strain at which the equation of state is clamped [-]
+	VolumeConstants(const Material& m, double d)
+	        : eos(m.eos), d2(d * d), perArea(mca::perArea(d)), G43(m.G * (4. / 3.)), perRho(1. / m.eos.rho0), clampAt(LawOf<law>::clampStrain(m.eos))
+	{
+	}
+};
+
+/// Pressure and internal energy at a new volume.
+struct PressureState {
+	double P; ///< [Pa]
+	double e; ///< internal energy per mass, where the equation of state needs it [J/kg]
+};
+/// J: new volume ratio, Jo: that of the step before, old: pressure and energy then. ofLinks: the volume is that of links. Contacts push by the cold curve
+/// alone: so does an automaton without links work, and its internal energy keeps the rest.
+template <EosKind law> MCA_INLINE PressureState pressureStep(const VolumeConstants<law>& c, double J, double Jo, PressureState old, bool ofLinks)
+{
+	PressureState now { pressure<law>(c.eos, J - 1.), old.e };
+	if constexpr (LawOf<law>::heats) {
+		double       e   = old.e;
+		const double hot = pressureWithWork<law>(c.eos, J - 1., J - Jo, old.P, e), work = 0.5 * (old.P + now.P) * (J - Jo) * c.perRho;
+		now = { ofLinks ? hot : now.P, ofLinks ? e : old.e - work };
+	}
+	return now;
+}
+/// Increment of the volume strain over a step, at its middle [-].
+MCA_INLINE double dilation(double J, double Jo) { return 2. * (J - Jo) / (J + Jo); }
+MCA_INLINE bool   validVolume(double J) { return J > 0. && J < 1e6; } // false for NaN as well
+/// (3) over the density: square of a longitudinal wave's speed in the rest frame [m2/s2]; bulk, shear >= 1: how much stiffer than in the perfect packing.
+template <EosKind law> MCA_INLINE double stiffness(const VolumeConstants<law>& c, double J, double bulk = 1., double shear = 1.)
+{
+	return (tangent<law>(c.eos, J - 1.) * bulk + c.G43 * shear) * c.perRho / J;
+}
+
+/// The volume that contacts alone give an automaton [-]; sum of their volume terms.
+MCA_INLINE double contactRatio(double sum) { return 1. / fma(sum, 1. / nLinks, 1.); }
+
+// ---- the affine rule: F = sum r (x) e_k / (spread d), J = factor det F + rest. Exact in any homogeneous deformation of any arrangement of two or more links
+// that are not in a line, and without geometric stiffness under pressure. Contacts have a volume of their own, by rule (5): it pushes from the first touch,
+// whatever the links hold; an automaton without links has no other.
+
+/// State of rest of an automaton's links.
+struct AffineRest {
+	double factor; ///< J = factor det F + rest; 0: too few links to have a volume
+	double rest;   ///< last bit of J = 1 at rest: no pressure, whether asleep or awake
+};
+/// sum = sum of r (x) e_k at rest [m].
+template <EosKind law> MCA_INLINE AffineRest affineRest(const VolumeConstants<law>& c, const Tensor<double>& sum)
+{
+	const double det = linkDeterminant(sum, c.perArea), factor = det > minVolume ? 1. / det : 0.;
+	return { factor, factor > 0. ? 1. - factor * det : 0. };
+}
+/// J by the links, or by the contacts (sum of their volume terms) where the links have none.
+template <EosKind law> MCA_INLINE double affineRatio(const VolumeConstants<law>& c, const Tensor<double>& sum, double factor, double rest, double contactSum)
+{
+	const double det = linkDeterminant(sum, c.perArea);
+	return factor > 0. ? factor * det + rest : contactRatio(contactSum);
+}
+/// The factor with which other links measure the volume J; det: linkDeterminant() of these links.
+MCA_INLINE double affineFactor(double J, double rest, double det) { return det > minVolume && J > 0. ? (J - rest) / det : 0.; }
+/// P pushes link k by affinePush() e_k [N/m]: P dV/dr, V = cell J.
+template <EosKind law> MCA_INLINE Tensor<double> affinePush(const VolumeConstants<law>& c, const Tensor<double>& sum, double factor, double P, double cell)
+{
+	const double         a = factor * c.perArea * P * cell;
+	const Tensor<double> k = cofactor(sum);
+	return { a * k.xx, a * k.xy, a * k.yx, a * k.yy };
+}
+/// stiffness(), and how much stiffer than in the perfect packing: the volume by the sum of (dJ/dr_k)^2, the pair law by the closest link. directions: sum
+/// of e_k (x) e_k; nearest2 = smallest r^2 [m2]. Covers edges and corners of free surfaces up to nu = 0.49, measured; beyond 4 what is torn and sheared.
+template <EosKind law> MCA_INLINE double affineStiffness(const VolumeConstants<law>& c, double J, const Tensor<double>& F, const Symmetric<double>& e, double factor, double nearest2)
+{
+	const double spread = e.xx * (F.yy * F.yy + F.yx * F.yx) - 2. * e.xy * (F.yy * F.xy + F.yx * F.xx) + e.yy * (F.xy * F.xy + F.xx * F.xx);
+	const double one = max(factor * factor * spread * c.perArea * (1. / nLinks), 1.), bulk = max(min(one * one, 4.), one);
+	return stiffness(c, J, bulk, max(0.5 * c.d2 / nearest2, 1.));
+}
+}

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The packing of the automata: the one place that knows how many neighbours an automaton has and where they stand.
+#pragma once
+#include "vector.hpp"
+
+namespace mca {
+
+/// Hexagonal packing in plane strain, per unit thickness. Link k points at 60 k degrees in the frame of the packing. Omega0 = N0 S0 d / (2 dim).
+struct Hexagonal {
+	static constexpr int    dim = 2, neighbours = 6;
+	static constexpr double turn = 3.14159265358979323846 / 3.; ///< angle between two links next to each other [rad]
+	/// direction of link k [-]
+	static constexpr double x[neighbours] = { 1., 0.5, -0.5, -1., -0.5, 0.5 };
+	static constexpr double y[neighbours] = { 0., 0.86602540378443864676, 0.86602540378443864676, 0., -0.86602540378443864676, -0.86602540378443864676 };
+	/// sum of direction (x) direction over all links = spread times the unit tensor
+	static constexpr double spread = double(neighbours) / dim;
+	/// the same link in the slots of its other end
+	static constexpr int opposite(int k) { return (k + neighbours / 2) % neighbours; }
+	static double        cell(double d) { return 0.86602540378443864676 * d * d; } ///< Omega0 [m2]
+	static double        width(double d) { return d * 0.57735026918962576451; }    ///< S0 [m]
+};
+/// The packing that the solvers are built for.
+using Lattice = Hexagonal;
+constexpr int nLinks = Lattice::neighbours;
+
+/// Stands for direction (x) direction of link k in a sum over links; w: 1 where the link holds, else 0.
+template <class T> MCA_INLINE void addDirection(Symmetric<T>& sum, int k, T w)
+{
+	sum.xx += w * (Lattice::x[k] * Lattice::x[k]), sum.xy += w * (Lattice::x[k] * Lattice::y[k]), sum.yy += w * (Lattice::y[k] * Lattice::y[k]);
+}
+/// v (x) direction of link k in a sum over links.
+template <class T> MCA_INLINE void addDyad(Tensor<T>& sum, int k, Vec<T> v)
+{
+	sum.xx = fma(Lattice::x[k], v.x, sum.xx), sum.yx = fma(Lattice::x[k], v.y, sum.yx);
+	if (Lattice::y[k] != 0.) sum.xy = fma(Lattice::y[k], v.x, sum.xy), sum.yy = fma(Lattice::y[k], v.y, sum.yy);
+}
+/// A times direction of link k.
+template <class T> MCA_INLINE Vec<T> times(const Tensor<T>& A, int k)
+{
+	return { fma(Lattice::x[k], A.xx, Lattice::y[k] * A.xy), fma(Lattice::x[k], A.yx, Lattice::y[k] * A.yy) };
+}
+}

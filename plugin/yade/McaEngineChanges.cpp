@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// McaEngine and the bodies: whenever a script can look, both hold the same; what it changes then is taken over or refused.
+// Every look costs one comparison of all bodies, so the loops here are made for few cache misses.
+#include "McaBodies.hpp"
+#include "McaCast.hpp"
+#include "McaEngine.hpp"
+#include <pkg/common/Sphere.hpp>
+#include <cstring>
+#include <unordered_set>
+
+namespace yade {
+using mca::automata::Store;
+
+/// What a script has changed in one body.
+struct McaEngine::Change {
+	size_t place; ///< in order
+	bool   position, velocity, spin, angle, plasticStrain, temperature, strength, mask, blocked;
+	bool   motion() const { return position || velocity || spin; }
+};
+
+namespace {
+	bool differs(Real a, Real b) { return !(a == b || (std::isnan(a) && std::isnan(b))); }
+
+	/// Zero when both have the same bits.
+	template <class T> uint64_t unlike(const T& a, const T& b)
+	{
+		static_assert(sizeof(T) % 4 == 0, "compared by words");
+		uint64_t d = 0;
+		for (size_t k = 0; k < sizeof(T); k += sizeof(T) % 8 ? 4 : 8) {
+			uint64_t x = 0, y = 0;
+			std::memcpy(&x, reinterpret_cast<const char*>(&a) + k, sizeof(T) % 8 ? 4 : 8), std::memcpy(&y, reinterpret_cast<const char*>(&b) + k, sizeof(T) % 8 ? 4 : 8);
+			d |= x ^ y;
+		}
+		return d;
+	}
+	template <class T> void soon(const T& what) { __builtin_prefetch(&what); }
+	constexpr size_t ahead = 6; ///< bodies whose memory is asked for before it is needed
+} // namespace
+
+/// Its bits are those that body and engine had when they were last the same. Most bodies are, so nothing else is looked at then.
+bool McaEngine::untouched(size_t q) const
+{
+	const Same& was = same[q];
+	const Body& b   = *bodies[q];
+	if (b.state.get() != was.state.get() || b.shape.get() != was.shape.get() || b.material.get() != was.material) return false;
+	const auto& s = static_cast<const McaState&>(*was.state);
+	uint64_t    d = unlike(s.se3.position, was.pos) | unlike(s.se3.orientation.coeffs(), was.ori.coeffs()) | unlike(s.vel, was.vel) | unlike(s.angVel, was.angVel);
+	d |= unlike(s.mass, was.mass) | unlike(s.inertia[2], was.inertia) | unlike(s.blockedDOFs, was.blocked) | unlike(b.groupMask, was.mask);
+	d |= unlike(s.pressure, was.pressure) | unlike(s.volumeRatio, was.volumeRatio) | unlike(s.equivalentStress, was.equivalentStress) | unlike(s.plasticStrain, was.plasticStrain);
+	d |= unlike(s.temperature, was.temperature) | unlike(s.stressZZ, was.stressZZ) | unlike(s.dissipated, was.dissipated) | unlike(s.strength, was.strength);
+	d |= unlike(s.links, was.links) | unlike(s.brokenLinks, was.brokenLinks) | unlike(static_cast<const Sphere&>(*was.shape).radius, was.radius);
+	return d == 0;
+}
+
+bool McaEngine::sameBodies(const Scene& scene) const
+{
+	const auto&     all     = scene.bodies->body;
+	const Material* foreign = nullptr; ///< of the body before, which is no automaton
+	size_t          q       = 0;
+	for (size_t k = 0; k < all.size(); k++) {
+		const auto& b = all[k];
+		if (!b) continue;
+		if (q < bodies.size() && b.get() == bodies[q].get()) {
+			if (int(k) != order[q]) return false;
+			q++;
+		} else if (b->material.get() != foreign || !foreign) {
+			if (isAutomaton(b)) return false;
+			const auto* m = b->material.get();
+			foreign       = m && castTo<const McaMat>(m) ? nullptr : m;
+		}
+	}
+	return q == bodies.size();
+}
+
+bool McaEngine::sameMaterials() const
+{
+	for (size_t k = 0; k < known.size(); k++)
+		if (known[k]) {
+			const mca::Material now = static_cast<const McaMat&>(*known[k]).toMaterial();
+			if (!mca::same(now, solver->store.materials[k])) return false;
+		}
+	return true;
+}
+
+/// What scripts have changed since body and engine were the same. rebuild: a body has another material. Throws before anything is taken over.
+vector<McaEngine::Change> McaEngine::changes(bool& rebuild)
+{
+	vector<Change> list;
+	for (size_t q = 0; q < order.size(); q++) {
+		if (const size_t p = q + ahead; p < order.size() && bodies[p] && same[p].state && same[p].shape) {
+			const auto& s = static_cast<const McaState&>(*same[p].state);
+			soon(bodies[p]->groupMask), soon(bodies[p]->shape), soon(s.se3), soon(s.vel), soon(s.angVel), soon(s.inertia[2]), soon(s.blockedDOFs), soon(s.temperature), soon(s.brokenLinks);
+			soon(static_cast<const Sphere&>(*same[p].shape).radius);
+		}
+		if (!bodies[q] || untouched(q)) continue;
+		const Change c = changeOf(q, rebuild);
+		if (c.motion() || c.angle || c.plasticStrain || c.temperature || c.strength || c.mask || c.blocked) list.push_back(c);
+	}
+	return list;
+}
+
+McaEngine::Change McaEngine::changeOf(size_t q, bool& rebuild)
+{
+	const Store& S = solver->store;
+	const Body&  b = *bodies[q];
+	if (!isAutomaton(bodies[q])) refuseBody(b, "it is an automaton no more (its material or shape was replaced); erase it and add another body instead.");
+	const auto* m = b.state ? castTo<const McaState>(b.state.get()) : nullptr;
+	if (!m) refuseBody(b, "its state was replaced by one that is no McaState; make it with material.newAssocState().");
+	const McaState& s    = *m;
+	Same&           was  = same[q];
+	const size_t    i    = size_t(solver->indexOf(order[q]));
+	const bool      tied = S.flags[i] & mca::tiedBit;
+	const auto      free = [&](unsigned dof, Real inverse) { return !(s.blockedDOFs & dof) == (inverse > 0); };
+	Change          c;
+	c.place         = q;
+	c.position      = s.se3.position != was.pos;
+	c.velocity      = s.vel != was.vel;
+	c.spin          = s.angVel != was.angVel;
+	c.angle         = !((s.se3.orientation.coeffs() - was.ori.coeffs()).norm() < 1e-12); // a quaternion is normalised anew on its way through a file
+	c.plasticStrain = differs(s.plasticStrain, was.plasticStrain);
+	c.temperature   = differs(s.temperature, was.temperature);
+	c.strength      = differs(s.strength, was.strength);
+	c.mask          = b.groupMask != was.mask;
+	c.blocked       = !tied && !(free(State::DOF_X, S.ax[i]) && free(State::DOF_Y, S.ay[i]) && free(State::DOF_RZ, S.ar[i]));
+	if (c.position || c.velocity || c.spin || c.angle) checkMotion(b);
+	if (tied && (c.position || c.velocity)) refuseBody(b, "it is tied to a grid, which moves it; its position and velocity cannot be set. Set those of the grid before the first step.");
+	if (c.plasticStrain && !(s.plasticStrain >= 0 && s.plasticStrain <= 1e6)) refuseBody(b, "state.plasticStrain = " + numberText(s.plasticStrain) + " must be from 0 to 1e6.");
+	if (c.temperature && !(s.temperature > 0 && s.temperature <= 1e9)) refuseBody(b, "state.temperature = " + numberText(s.temperature) + " K must be above 0 and at most 1e9.");
+	if (c.strength && !(s.strength > 0 && s.strength <= 1e9)) refuseBody(b, "state.strength = " + numberText(s.strength) + " must be above 0 and at most 1e9.");
+	const Real radius = static_cast<const Sphere*>(b.shape.get())->radius;
+	if (differs(s.mass, was.mass) || differs(s.inertia[2], was.inertia) || differs(radius, was.radius))
+		refuseBody(b, "mass " + numberText(s.mass) + " kg/m, inertia " + numberText(s.inertia[2]) + " kg m or radius " + numberText(radius) + " m was changed (from " + numberText(was.mass) + ", " + numberText(was.inertia) + ", "
+		               + numberText(was.radius) + "); they are read when a body is taken over for the first time. Erase it and add another body.");
+	const auto result = [&](const char* name, Real now, Real before) {
+		if (differs(now, before)) refuseBody(b, string("state.") + name + " was set to " + numberText(now) + " (it was " + numberText(before) + "); it is a result of the law and cannot be prescribed. Set it back.");
+	};
+	result("pressure", s.pressure, was.pressure), result("volumeRatio", s.volumeRatio, was.volumeRatio), result("stressZZ", s.stressZZ, was.stressZZ), result("dissipated", s.dissipated, was.dissipated);
+	result("links", s.links, was.links), result("brokenLinks", s.brokenLinks, was.brokenLinks), result("equivalentStress", s.equivalentStress, was.equivalentStress);
+	rebuild |= b.material.get() != was.material;
+	was.state = b.state, was.shape = b.shape; // others of the same content
+	if (!c.angle) was.ori = s.se3.orientation;
+	if (!c.blocked) was.blocked = s.blockedDOFs;
+	return c;
+}
+
+void McaEngine::apply(const vector<Change>& list)
+{
+	Store& S      = solver->store;
+	bool   motion = false, masks = false;
+	for (const auto& c : list)
+		motion |= c.motion(), masks |= c.mask;
+	if (motion && !forcesReady) stale = true, solver->computeForces(); // the strain of the last step belongs to the motion before the change
+	for (const auto& c : list) {
+		const Body&  b = *bodies[c.place];
+		const auto&  s = static_cast<const McaState&>(*b.state);
+		const size_t i = size_t(solver->indexOf(order[c.place])); // sorting may have moved it
+		Same&        now = same[c.place];
+		if (c.position) now.pos = s.se3.position, S.x[i] = now.pos[0], S.y[i] = now.pos[1];
+		if (c.velocity) now.vel = s.vel, S.vx[i] = s.vel[0], S.vy[i] = s.vel[1];
+		if (c.spin) now.angVel = s.angVel, S.omega[i] = s.angVel[2];
+		if (c.angle) now.ori = s.se3.orientation, now.angle = NaN, S.angle[i] = 2. * std::atan2(s.se3.orientation.z(), s.se3.orientation.w());
+		if (c.plasticStrain) S.eqps[i] = now.plasticStrain = s.plasticStrain;
+		if (c.temperature) S.temperature[i] = now.temperature = s.temperature;
+		if (c.strength) S.strength[i] = now.strength = s.strength;
+		if (c.mask) S.group[i] = now.mask = b.groupMask;
+		if (c.blocked) {
+			now.blocked = s.blockedDOFs;
+			S.ax[i] = s.blockedDOFs & State::DOF_X ? 0. : 1. / S.mass[i];
+			S.ay[i] = s.blockedDOFs & State::DOF_Y ? 0. : 1. / S.mass[i];
+			S.ar[i] = s.blockedDOFs & State::DOF_RZ ? 0. : 1. / S.inertia[i];
+		}
+	}
+	if (motion) {
+		solver->moved();
+		forcesReady = false;
+	}
+	if (masks) solver->searchAnew();
+}
+
+void McaEngine::adoptChanges(Scene* scene)
+{
+	const bool set     = !sameBodies(*scene);
+	bool       rebuild = false;
+	const auto list    = changes(rebuild);
+	rebuild |= !sameMaterials();
+	apply(list);
+	if (!set && !rebuild) return;
+	// The strain of the last step belongs to those that made it. Where bodies were only erased it goes on with those that are left.
+	std::unordered_set<const Body*> mine;
+	for (const auto& b : bodies)
+		mine.insert(b.get());
+	const bool joined = std::any_of(scene->bodies->body.begin(), scene->bodies->body.end(), [&](const shared_ptr<Body>& b) { return isAutomaton(b) && !mine.count(b.get()); });
+	if ((joined || rebuild) && !forcesReady) solver->computeForces();
+	if (stale) writeBodies(scene);             // the others are gathered from what they hold
+	gather(scene);
+	if (joined || rebuild) solver->moved();
+}
+
+/// What the engine holds of one body; `was` remembers it. False when a script has changed what is written over.
+bool McaEngine::writeBody(State& s, Same& was, size_t i) const
+{
+	const Store& S    = solver->store;
+	auto*        m    = castTo<McaState>(&s);
+	bool         kept = s.se3.position == was.pos && s.vel == was.vel && s.angVel == was.angVel && (s.se3.orientation.coeffs() - was.ori.coeffs()).norm() < 1e-12;
+	if (m) kept &= !differs(m->plasticStrain, was.plasticStrain) && !differs(m->temperature, was.temperature);
+	was.pos = Vector3r(S.x[i], S.y[i], s.se3.position[2]), was.vel = Vector3r(S.vx[i], S.vy[i], 0);
+	if (S.angle[i] != was.angle) was.angle = S.angle[i], was.ori = Quaternionr(AngleAxisr(was.angle, Vector3r::UnitZ()));
+	was.angVel     = Vector3r(0, 0, S.omega[i]);
+	s.se3.position = was.pos, s.se3.orientation = was.ori, s.vel = was.vel, s.angVel = was.angVel;
+	if (!m) return kept;
+	m->pressure = was.pressure = S.P[i], m->volumeRatio = was.volumeRatio = S.J[i], m->plasticStrain = was.plasticStrain = S.eqps[i], m->temperature = was.temperature = S.temperature[i];
+	m->stressZZ = was.stressZZ = S.szz[i], m->equivalentStress = was.equivalentStress = solver->equivalentStress(i);
+	m->links       = was.links       = __builtin_popcount(S.flags[i] & mca::linkBits);
+	m->brokenLinks = was.brokenLinks = __builtin_popcount((S.flags[i] >> mca::hadShift) & mca::linkBits) - was.links;
+	if (!S.heat.empty()) m->dissipated = S.heat[i];
+	was.dissipated = m->dissipated;
+	return kept;
+}
+
+void McaEngine::writeBodies(Scene* scene)
+{
+	const Store& S      = solver->store;
+	Real         lowest = 0;
+	for (size_t q = 0; q < order.size(); q++) {
+		const auto&  b = bodies[q];
+		const size_t i = size_t(solver->indexOf(order[q]));
+		if (!b || !b->state) continue; // erased since loading; told by the next step
+		if (!writeBody(*b->state, same[q], i) && stale) lost = b->id;
+		const auto& m = S.materials[size_t(S.species[size_t(S.speciesOf(i))].material)];
+		lowest        = std::min(lowest, S.P[i] / (m.eos.rho0 * m.eos.c0 * m.eos.c0));
+	}
+	stale       = false;
+	looked      = true;
+	lastWritten = scene->iter;
+	if (lowest < -0.25 && !warnedTension) {
+		warnedTension = true;
+		LOG_WARN("McaEngine: the tensile pressure is " << -lowest << " of the bulk modulus. Links hold any tension unless the material has a strength (spallStrength, fractureStrain, pairStrength or fractureStress).");
+	}
+	if (scene->trackEnergy) writeEnergies(scene);
+	if (lost < 0) return;
+	LOG_ERROR("McaEngine: body " << lost << " was changed by a script while the loop ran in the background, when the bodies are not up to date. The change is lost.");
+}
+
+void McaEngine::bringUpToDate()
+{
+	locked([&] {
+		const auto scene = home.lock();
+		if (!solver || !stale || !scene || (solver->counters.steps == 0 && lastWritten < 0)) return;
+		writeBodies(scene.get());
+	});
+}
+} // namespace yade
