@@ -63,7 +63,7 @@ void Solver::makeBlocks(const std::vector<Automaton>& in)
 		v->clear();
 	bool heats = false;
 	for (auto& m : S.materials)
-		heats |= m.eos.mieGrueneisen;
+		heats |= m.eos.heats();
 	if (!heats) S.heat.clear();
 	int32_t maxId = -1;
 	for (auto& a : in)
@@ -76,7 +76,7 @@ void Solver::makeBlocks(const std::vector<Automaton>& in)
 		const Species& sp = S.species[S.blocks[i / blockSize].species];
 		S.diameter[i]     = sp.d;
 		S.J[i] = 1., S.mass[i] = 1., S.inertia[i] = 1., S.invN[i] = 1. / nLinks, S.cell[i] = Lattice::cell(sp.d), S.id[i] = -1, S.strength[i] = 1., S.weight[i] = 1.;
-		S.temperature[i] = S.materials[sp.material].yield.T0;
+		S.temperature[i] = S.materials[sp.material].yield.referenceTemperature;
 		if (source[i] < 0) { // padding sits on its block's first automaton, without links
 			const size_t first = i - i % blockSize;
 			S.x[i] = S.x[first], S.y[i] = S.y[first];
@@ -282,7 +282,7 @@ void Solver::build(const std::vector<Automaton>& automata, const std::vector<Mat
 	store.materials = materials;
 	flows           = false;
 	for (auto& m : materials)
-		flows |= m.yield.kind != YieldKind::elastic && o.volumeRule == VolumeRule::affine;
+		flows |= m.yield.yields() && o.volumeRule == VolumeRule::affine;
 	filterTime = 0;
 	tied.clear(), tiedVx.clear(), tiedVy.clear(), tiedW.clear(), exposed.clear(), contactAdjacent.clear();
 	time = lastDt = lastMove = dtLimit = contactSpeed2 = 0, lastSort = 0;

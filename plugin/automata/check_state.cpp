@@ -88,7 +88,7 @@ namespace {
 		          n),
 		     "the length of an array");
 		bool heats = false;
-		for (const Material& m : S.materials) heats |= m.eos.mieGrueneisen;
+		for (const Material& m : S.materials) heats |= m.eos.heats();
 		need(size({ &S.heat }, heats ? n : 0) && (size({ &S.ex, &S.ey, &S.et }, 0) || size({ &S.ex, &S.ey, &S.et }, n))
 		             && (size({ &S.dampX, &S.dampY }, 0) || size({ &S.dampX, &S.dampY }, n)),
 		     "the length of an array");

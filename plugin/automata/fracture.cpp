@@ -135,7 +135,7 @@ void Solver::settleVolumes()
 		if (s.holds || !affine)
 			for (size_t c = first; c < last; c++)
 				C.rest[c] = s.restDistance(rule, distance(c), C.d[c]);
-		const bool heat = m.eos.mieGrueneisen; // its volumetric energy is in the heat
+		const bool heat = m.eos.heats(); // its volumetric energy is in the heat
 		if (options.account && s.holds) sums.fracture += affine ? coldEnergyAt(i, Jc) : 0.;
 		if (options.account && !s.holds && !heat) sums.fracture += coldEnergyAt(i, J);
 		if (s.holds) continue;

@@ -34,7 +34,7 @@ size_t Solver::stiffestAutomaton() const
 		for (int l = 0; l < S.blocks[b].count; l++) {
 			const size_t          i = b * blockSize + l;
 			const VolumeConstants c(S.materialOf(S.blocks[b]), S.diameter[i]);
-			const double          k = stiffness(c, S.J[i]) / c.d2;
+			const double          k = dispatch(c.eos.kind, [&](auto law) { return stiffness<law.value>(c, S.J[i]); }) / c.d2;
 			if (k > most) most = k, who = i;
 		}
 	return who;

@@ -11,7 +11,7 @@
 
 namespace mca::automata {
 namespace {
-	constexpr uint64_t magic = 0x4d43413041303033ULL; // layout of this file; change it with every change of the arrays
+	constexpr uint64_t magic = 0x4d43413041303033ULL ^ lawsVersion(); // layout of this file; change it with every change of the arrays
 
 	[[noreturn]] void damaged(const char* what) { throw Error(std::string("the saved state of the automata is damaged: ") + what + "."); }
 
@@ -73,6 +73,7 @@ namespace {
 			else f.number(v);
 		}
 		void operator()(YieldKind& v) { f.choice(v, yieldKinds); }
+		void operator()(EosKind& v) { f.choice(v, eosKinds); }
 		void operator()(VolumeRule& v) { f.choice(v, 3); }
 		void operator()(Block& b) { each(b.species, b.count, b.intact, b.mixed, b.contact, b.awake, b.moving, b.ringsAwake); }
 		void operator()(Species& s) { each(s.material, s.d); }

@@ -132,7 +132,7 @@ void Solver::heats()
 	if (store.heat.empty() || !(lastMove > 0)) return;
 	eachAwake([&](size_t b) {
 		const Material& m = store.materialOf(store.blocks[b]);
-		if (m.eos.mieGrueneisen && m.viscosity.active()) viscousHeat(store, b, lastMove, options.account ? &works[b] : nullptr);
+		if (m.eos.heats() && m.viscosity.active()) viscousHeat(store, b, lastMove, options.account ? &works[b] : nullptr);
 	});
 }
 

@@ -71,7 +71,7 @@ namespace {
 		if (!(over > 0.)) return;
 #pragma omp simd
 		for (int l = 0; l < lanes; l++) {
-			const Return r = radialReturn<kind>(yield, StaticYield { stress[l], slope[l] }, to.trial[g + l], threeG, dt);
+			const Return r = radialReturn<kind>(yield, StaticYield { stress[l], slope[l] }, to.trial[g + l], V.eqps[g + l], V.temperature[g + l], threeG, dt);
 			to.scale[g + l] = r.scale, to.flow[g + l] = r.dEqps;
 		}
 	}
@@ -86,10 +86,10 @@ namespace {
 			to.szz[l]   = trialSzz(twoG, V.dTheta[l], V.szz[l]);
 			to.trial[l] = std::sqrt(equivalentStress2(sums.square[l] * V.invN[l], to.szz[l]));
 			most        = max(most, to.trial[l]);
-			if (kind == YieldKind::johnsonCook) hottest = max(hottest, V.temperature[l]);
+			if (LawOf<kind>::heats) hottest = max(hottest, V.temperature[l]);
 		}
 		// logarithms and powers are most of the cost: not where nobody reaches the yield stress of unstrained material at the highest temperature
-		if constexpr (kind == YieldKind::johnsonCook) {
+		if constexpr (LawOf<kind>::isDear) {
 			std::fill(to.scale, to.scale + blockSize, 1.), std::fill(to.flow, to.flow + blockSize, 0.);
 			if (most > staticYield<kind>(yield, 0., hottest).stress)
 				for (int g = 0; g < blockSize; g += lanes)
@@ -97,7 +97,7 @@ namespace {
 		} else
 #pragma omp simd
 			for (int l = 0; l < blockSize; l++) {
-				const Return r = radialReturn<kind>(yield, to.trial[l], V.eqps[l], 0., threeG, dt);
+				const Return r = radialReturn<kind>(yield, to.trial[l], V.eqps[l], LawOf<kind>::heats ? V.temperature[l] : 0., threeG, dt);
 				to.scale[l] = r.scale, to.flow[l] = r.dEqps;
 			}
 	}
@@ -107,7 +107,7 @@ namespace {
 	{
 		const Yield  yield = V.material.yield;
 		const double threeG = 3. * V.material.G, perRho = 1. / V.material.eos.rho0, sixth = Lattice::cell(V.d) / nLinks;
-		double*      heat   = V.material.eos.mieGrueneisen ? V.heat : nullptr;
+		double*      heat   = V.material.eos.heats() ? V.heat : nullptr;
 		double       plastic = 0, coupling = 0, heated = 0;
 #pragma omp simd reduction(+ : plastic, coupling, heated)
 		for (int l = 0; l < blockSize; l++) {
@@ -115,8 +115,8 @@ namespace {
 			const double before = V.szz[l], szz = R.szz[l] * r.scale;
 			factor[l]           = r.scale * V.J[l];
 			V.szz[l]            = szz;
-			if (kind != YieldKind::elastic) V.eqps[l] += r.dEqps;
-			if (kind == YieldKind::johnsonCook) V.temperature[l] = warmed(yield, V.temperature[l], R.trial[l], r);
+			if (LawOf<kind>::yields) V.eqps[l] += r.dEqps;
+			if (LawOf<kind>::heats) V.temperature[l] = warmed(yield, V.temperature[l], R.trial[l], r);
 			if (heat) {
 				const double q = plasticHeat(V.J[l], R.trial[l], r, perRho);
 				heat[l] += q, heated += q * V.cell[l];

@@ -16,8 +16,9 @@ namespace {
 			V.record[nodeSize * l + 5] = V.dTheta[l];
 	}
 
-	template <VolumeRule rule, bool intact, bool mixed, bool mie> void sumRule(const BlockView& V, const double* contactSum, bool init, BlockResult& out)
+	template <VolumeRule rule, bool intact, bool mixed, EosKind law> void sumRule(const BlockView& V, const double* contactSum, bool init, BlockResult& out)
 	{
+		constexpr bool        hot = LawOf<law>::heats;
 		const VolumeConstants c(V.material, V.d);
 		const double *        X = V.x - V.base, *Y = V.y - V.base, *D = V.diameterOfAll, d = V.d;
 		const int32_t *       nb = V.neighbour, *flags = V.flags;
@@ -54,11 +55,11 @@ namespace {
 #pragma omp simd reduction(max : stiffest, closing, widest) reduction(+ : clampCount, badCount)
 		for (int l = 0; l < blockSize; l++) {
 			const double        J = volumeRatio<rule>((sums[l] - V.rest[l]) * V.invN[l]), Jo = init ? J : V.J[l];
-			const PressureState p = pressureStep<mie>(c, J, Jo, { V.P[l], mie ? V.heat[l] : 0. }, true);
+			const PressureState p = pressureStep<law>(c, J, Jo, { V.P[l], hot ? V.heat[l] : 0. }, true);
 			V.dTheta[l] = dilation(J, Jo), V.J[l] = J, V.P[l] = p.P;
-			if (mie) V.heat[l] = p.e;
+			if (hot) V.heat[l] = p.e;
 			V.h[l]   = pressureShare<rule>(p.P, J, V.cell[l] * V.invN[l]);
-			stiffest = max(stiffest, stiffness(c, J));
+			stiffest = max(stiffest, stiffness<law>(c, J));
 			closing  = max(closing, -V.dTheta[l]);
 			widest   = max(widest, J);
 			clampCount += J - 1. < c.clampAt ? 1 : 0;
@@ -95,8 +96,9 @@ namespace {
 			if (!intact) store(to.exx + g, e.xx), store(to.exy + g, e.xy), store(to.eyy + g, e.yy);
 		}
 	}
-	template <bool intact, bool mie> void affineRule(const BlockView& V, const double* contactSum, bool init, BlockResult& out)
+	template <bool intact, EosKind law> void affineRule(const BlockView& V, const double* contactSum, bool init, BlockResult& out)
 	{
+		constexpr bool        hot = LawOf<law>::heats;
 		const VolumeConstants c(V.material, V.d);
 		LinkSums              L;
 		sumLinks<intact>(V, L);
@@ -112,11 +114,11 @@ namespace {
 			const Tensor<double>    F = { L.xx[l], L.xy[l], L.yx[l], L.yy[l] };
 			const Symmetric<double> e = intact ? Symmetric<double> { Lattice::spread, 0., Lattice::spread } : Symmetric<double> { L.exx[l], L.exy[l], L.eyy[l] };
 			const double            J = affineRatio(c, F, V.factor[l], V.rest[l], contactSum ? contactSum[l] : 0.), Jo = init ? J : V.J[l];
-			const PressureState     p = pressureStep<mie>(c, J, Jo, { V.P[l], mie ? V.heat[l] : 0. }, V.factor[l] > 0.);
+			const PressureState     p = pressureStep<law>(c, J, Jo, { V.P[l], hot ? V.heat[l] : 0. }, V.factor[l] > 0.);
 			const Tensor<double>    t = affinePush(c, F, V.factor[l], p.P, V.cell[l]);
-			stiffest = max(stiffest, affineStiffness(c, J, F, e, V.factor[l], L.nearest2[l]));
+			stiffest = max(stiffest, affineStiffness<law>(c, J, F, e, V.factor[l], L.nearest2[l]));
 			V.dTheta[l] = dilation(J, Jo), V.J[l] = J, V.P[l] = p.P;
-			if (mie) V.heat[l] = p.e;
+			if (hot) V.heat[l] = p.e;
 			L.xx[l] = t.xx, L.xy[l] = t.xy, L.yx[l] = t.yx, L.yy[l] = t.yy;
 			closing = max(closing, -V.dTheta[l]);
 			widest  = max(widest, J);
@@ -130,8 +132,8 @@ namespace {
 #pragma omp simd reduction(max : stiffest) reduction(+ : clampCount)
 			for (int l = 0; l < blockSize; l++) {
 				const double J = contactRatio(contactSum[l]);
-				V.h[l]         = pressureShare<ofContacts(VolumeRule::affine)>(pressure(c.eos, J - 1.), J, V.cell[l] * (1. / nLinks));
-				stiffest       = max(stiffest, stiffness(c, J));
+				V.h[l]         = pressureShare<ofContacts(VolumeRule::affine)>(pressure<law>(c.eos, J - 1.), J, V.cell[l] * (1. / nLinks));
+				stiffest       = max(stiffest, stiffness<law>(c, J));
 				clampCount += J - 1. < c.clampAt ? 1 : 0;
 			}
 		}
@@ -144,14 +146,12 @@ void volumePass(Store& S, size_t b, VolumeRule rule, const Extra& X, bool init, 
 {
 	const BlockView V(S, b);
 	const double*   contactSum = V.block.contact && X.contactSum ? X.contactSum + V.base : nullptr;
-	choices(
-	        [&](auto intact, auto mixed, auto mie) {
-		        dispatch(rule, [&](auto r) {
-			        if constexpr (r.value == VolumeRule::affine) affineRule<intact.value, mie.value>(V, contactSum, init, out);
-			        else sumRule<r.value, intact.value, mixed.value, mie.value>(V, contactSum, init, out);
-		        });
-	        },
-	        V.block.intact, V.block.mixed, V.material.eos.mieGrueneisen);
+	dispatch(V.material.eos.kind, [&](auto law) {
+		dispatch(rule, [&](auto r) {
+			if constexpr (r.value == VolumeRule::affine) choices([&](auto intact) { affineRule<intact.value, law.value>(V, contactSum, init, out); }, V.block.intact);
+			else choices([&](auto intact, auto mixed) { sumRule<r.value, intact.value, mixed.value, law.value>(V, contactSum, init, out); }, V.block.intact, V.block.mixed);
+		});
+	});
 	publishDilation(V);
 }
 }

@@ -3,7 +3,7 @@
 # Never -ffast-math: at link it would switch the whole process to flush denormals. -ffp-contract=off: a fused multiply-add only where written.
 find_package(OpenMP REQUIRED)
 
-set(MCA_SOLVER_FLAGS -O3 -ffp-contract=off -fno-math-errno -fno-trapping-math -fvisibility=hidden -fvisibility-inlines-hidden -Wall -Wextra -Wno-psabi)
+set(MCA_SOLVER_FLAGS -O3 -ffp-contract=off -fno-math-errno -fno-trapping-math -fvisibility=hidden -fvisibility-inlines-hidden -Wall -Wextra -Werror=switch -Wno-psabi)
 if(MCA_SANITIZE)
 	list(TRANSFORM MCA_SOLVER_FLAGS REPLACE "^-O3$" "-O1")
 endif()

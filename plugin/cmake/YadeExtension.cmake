@@ -39,7 +39,7 @@ target_compile_definitions(
 	mca_yade_abi INTERFACE EIGEN_DONT_ALIGN EIGEN_DONT_VECTORIZE EIGEN_DONT_PARALLELIZE EIGEN_DISABLE_UNALIGNED_ARRAY_ASSERT BOOST_BIND_GLOBAL_PLACEHOLDERS
 			       BOOST_ALLOW_DEPRECATED_HEADERS MCA_VERSION="${MCA_VERSION}" MCA_YADE_NUMBER=${MCA_YADE_NUMBER}
 			       MCA_YADE_VERSION="${MCA_YADE_VERSION}")
-target_compile_options(mca_yade_abi INTERFACE -Wall -Wextra -ffp-contract=off)
+target_compile_options(mca_yade_abi INTERFACE -Wall -Wextra -Werror=switch -ffp-contract=off)
 target_link_directories(mca_yade_abi INTERFACE "${MCA_YADE_LIBDIR}")
 # -z defs: a symbol this libyade lacks is an error here; libyade and libpkg_* themselves leave symbols to be found in the process
 target_link_options(mca_yade_abi INTERFACE -Wl,--no-as-needed -Wl,--allow-shlib-undefined -Wl,-z,defs)

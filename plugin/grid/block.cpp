@@ -73,9 +73,7 @@ double Block::pressureOf(int i, int j) const
 {
 	const size_t c   = cell(i, j);
 	const double eps = area(i, j) / restArea[c] - 1.;
-	const double p   = material.eos.mieGrueneisen && energy
-	          ? pressureMieGrueneisen(material.eos, eps, energy[c] / (material.eos.rho0 * restArea[c]))
-	          : pressure(material.eos, eps);
+	const double p   = energy ? hotPressure(material.eos, eps, energy[c] / (material.eos.rho0 * restArea[c])) : pressure(material.eos, eps);
 	return std::max(p, -material.fracture.spall);
 }
 
@@ -85,17 +83,17 @@ void Block::allocate(int cellsPerRow, int rows)
 	nj    = rows;
 	pitch = (size_t(ni) + 1 + 7) / 8 * 8;
 	const bool edges = options.edgeViscosity && material.viscosity.active();
-	arena = Arena(12 + (account ? 1 : 0) + (johnsonCook() ? 1 : 0) + (edges ? 2 : 0), pitch * (size_t(nj) + 1));
+	arena = Arena(12 + (account ? 1 : 0) + (material.yield.heats() ? 1 : 0) + (edges ? 2 : 0), pitch * (size_t(nj) + 1));
 	size_t k = 0;
 	for (double** p : { &x, &y, &vx, &vy, &invMass, &sxx, &syy, &sxy, &eqps, &restArea, &rx, &ry })
 		*p = arena.array(k++);
 	if (account) energy = arena.array(k++);
-	if (johnsonCook()) temperature = arena.array(k++);
+	if (material.yield.heats()) temperature = arena.array(k++);
 	if (edges) {
 		limiterX = arena.array(k++);
 		limiterY = arena.array(k++);
 	}
-	if (temperature) std::fill(temperature, temperature + pitch * (size_t(nj) + 1), material.yield.T0);
+	if (temperature) std::fill(temperature, temperature + pitch * (size_t(nj) + 1), material.yield.referenceTemperature);
 
 	bandStart.clear();
 	const int bands = std::max(1, nj / bandRows); // every band has two rows or more, or there is one band only

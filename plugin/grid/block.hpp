@@ -68,7 +68,7 @@ struct MCA_API Block {
 	// cells, nj x ni
 	double *sxx = nullptr, *syy = nullptr, *sxy = nullptr, *eqps = nullptr, *restArea = nullptr, *rx = nullptr, *ry = nullptr;
 	double *energy      = nullptr; ///< internal energy per unit thickness [J/m]; only with the energy account
-	double *temperature = nullptr; ///< [K]; only for Johnson-Cook
+	double *temperature = nullptr; ///< [K]; only where the flow stress heats
 	double *limiterX = nullptr, *limiterY = nullptr; ///< 1 - psi of the edges (edge viscosity only): edge (i,j)-(i+1,j), edge (i,j)-(i,j+1)
 
 	bool account = false; ///< internal energy is kept
@@ -94,7 +94,6 @@ struct MCA_API Block {
 
 	size_t node(int i, int j) const { return size_t(j) * pitch + size_t(i); }
 	size_t cell(int i, int j) const { return size_t(j) * pitch + size_t(i); }
-	bool   johnsonCook() const { return material.yield.kind == YieldKind::johnsonCook; }
 	bool   isPerimeter(int i, int j) const { return i == 0 || j == 0 || i == ni || j == nj; }
 	/// copy number of a perimeter node
 	int perimeterCopy(int i, int j) const;

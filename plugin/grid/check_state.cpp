@@ -42,7 +42,7 @@ void Grid::checkBlock(const Block& b, int copies) const
 	const auto above  = [](double x) { return x > 0 && x < largest; };
 	validate(b.material, b.options.name);
 	need(b.options.hourglass >= 0 && b.options.hourglass <= 4, "hourglass");
-	need(b.account || !b.material.eos.mieGrueneisen, "account");
+	need(b.account || !b.material.eos.heats(), "account");
 	for (const double* v : { b.x, b.y, b.vx, b.vy }) need(rows(b, v, b.ni + 1, b.nj + 1, number), "a position or velocity");
 	need(rows(b, b.restArea, b.ni, b.nj, above), "a rest area");
 	if (built_) need(rows(b, b.invMass, b.ni + 1, b.nj + 1, above), "a mass");

@@ -70,7 +70,7 @@ void edgeLimiterRow(Block& b, int j)
 	}
 }
 
-__attribute__((flatten)) uint64_t edgeRow(const Block& b, int j, int lo, int hi, const CellConstants& constants, const RowForces& f)
+template <EosKind eos> __attribute__((flatten)) uint64_t edgeLoop(const Block& b, int j, int lo, int hi, const CellConstants& constants, const RowForces& f)
 {
 	const CellConstants c  = constants;
 	const size_t        n0 = b.node(0, j), n1 = b.node(0, j + 1), c0 = b.cell(0, j);
@@ -99,7 +99,7 @@ __attribute__((flatten)) uint64_t edgeRow(const Block& b, int j, int lo, int hi,
 	for (int i = lo; i < hi; i++) {
 		const CellPattern p    = cellPattern(x0[i], y0[i], x0[i + 1], y0[i + 1], x1[i + 1], y1[i + 1], x1[i], y1[i]);
 		const double      area = cellArea(p), rho = c.eos.rho0 * restArea[i] / area;
-		const double      modulus = tangent(c.eos, area / restArea[i] - 1.) + (4. / 3.) * c.G, rhoC = std::sqrt(rho * modulus);
+		const double      modulus = tangent<eos>(c.eos, area / restArea[i] - 1.) + (4. / 3.) * c.G, rhoC = std::sqrt(rho * modulus);
 		const double      cx = 0.25 * ((x0[i] + x0[i + 1]) + (x1[i] + x1[i + 1])), cy = 0.25 * ((y0[i] + y0[i + 1]) + (y1[i] + y1[i + 1]));
 		const auto&       v  = c.viscosity;
 		const Edge e0 = edgeForce(x0[i], y0[i], x0[i + 1], y0[i + 1], vx0[i], vy0[i], vx0[i + 1], vy0[i + 1], cx, cy, below[i], rho, rhoC, v);
@@ -120,5 +120,10 @@ __attribute__((flatten)) uint64_t edgeRow(const Block& b, int j, int lo, int hi,
 		worst               = bits > worst ? bits : worst;
 	}
 	return worst;
+}
+
+uint64_t edgeRow(const Block& b, int j, int lo, int hi, const CellConstants& constants, const RowForces& f)
+{
+	return dispatch(constants.eos.kind, [&](auto eos) { return edgeLoop<eos.value>(b, j, lo, hi, constants, f); });
 }
 }

@@ -157,9 +157,11 @@ namespace {
 	{
 		CellConstants c = cellConstants(b, 0.);
 		CellState     s = { 0, 0, 0, 0, 0, 0, 0 };
-		if (!b.material.viscosity.active())
-			return updateCell<YieldKind::elastic, GridViscosity::none, true, false>(c, b.positionPattern(i, j), b.velocityPattern(i, j), b.restArea[b.cell(i, j)], 0., s).rate;
-		return updateCell<YieldKind::elastic, GridViscosity::scalar, true, false>(c, b.positionPattern(i, j), b.velocityPattern(i, j), b.restArea[b.cell(i, j)], 0., s).rate;
+		return dispatch(c.eos.kind, [&](auto eos) {
+			constexpr auto Q = GridViscosity::scalar, none = GridViscosity::none;
+			const auto     update = b.material.viscosity.active() ? updateCell<YieldKind::elastic, Q, true, eos.value> : updateCell<YieldKind::elastic, none, true, eos.value>;
+			return update(c, b.positionPattern(i, j), b.velocityPattern(i, j), b.restArea[b.cell(i, j)], 0., s).rate;
+		});
 	}
 }
 

@@ -8,7 +8,7 @@ namespace mca::grid {
 
 /// Cells [lo,hi) of row j. most: largest equivalent stress before the radial return [Pa].
 /// flatten: one call left in the loop and nothing vectorises.
-template <YieldKind kind, GridViscosity visc, bool hourglass, bool mieGrueneisen, bool flows>
+template <YieldKind kind, GridViscosity visc, bool hourglass, EosKind eos, bool flows>
 __attribute__((flatten)) uint64_t cellLoop(const Block& b, int j, int lo, int hi, const CellConstants& constants, const RowForces& f, double& most)
 {
 	const CellConstants c  = constants;
@@ -22,14 +22,14 @@ __attribute__((flatten)) uint64_t cellLoop(const Block& b, int j, int lo, int hi
 	const double* __restrict vx1 = b.vx + n1;
 	const double* __restrict vy1 = b.vy + n1;
 	const double* __restrict restArea = b.restArea + c0;
-	const double* __restrict energy   = mieGrueneisen ? b.energy + c0 : nullptr;
+	const double* __restrict energy   = LawOf<eos>::heats ? b.energy + c0 : nullptr;
 	double* __restrict sxx  = b.sxx + c0;
 	double* __restrict syy  = b.syy + c0;
 	double* __restrict sxy  = b.sxy + c0;
 	double* __restrict eqps = b.eqps + c0;
 	double* __restrict rx   = b.rx + c0;
 	double* __restrict ry   = b.ry + c0;
-	double* __restrict temperature = kind == YieldKind::johnsonCook ? b.temperature + c0 : nullptr;
+	double* __restrict temperature = LawOf<kind>::heats ? b.temperature + c0 : nullptr;
 	double* __restrict t0x = f.t0x;
 	double* __restrict t0y = f.t0y;
 	double* __restrict t1x = f.t1x;
@@ -41,24 +41,24 @@ __attribute__((flatten)) uint64_t cellLoop(const Block& b, int j, int lo, int hi
 		const CellPattern p = cellPattern(x0[i], y0[i], x0[i + 1], y0[i + 1], x1[i + 1], y1[i + 1], x1[i], y1[i]);
 		const CellPattern v = cellPattern(vx0[i], vy0[i], vx0[i + 1], vy0[i + 1], vx1[i + 1], vy1[i + 1], vx1[i], vy1[i]);
 		CellState         s = { sxx[i], syy[i], sxy[i], 0., 0., 0., 0. };
-		if constexpr (kind != YieldKind::elastic) s.eqps = eqps[i];
+		if constexpr (LawOf<kind>::yields) s.eqps = eqps[i];
 		if constexpr (hourglass) {
 			s.rx = rx[i];
 			s.ry = ry[i];
 		}
-		if constexpr (kind == YieldKind::johnsonCook) s.temperature = temperature[i];
+		if constexpr (LawOf<kind>::heats) s.temperature = temperature[i];
 		double e = 0.;
-		if constexpr (mieGrueneisen) e = energy[i] / restArea[i];
-		const CellForces out = updateCell<kind, visc, hourglass, mieGrueneisen, flows>(c, p, v, restArea[i], e, s);
+		if constexpr (LawOf<eos>::heats) e = energy[i] / restArea[i];
+		const CellForces out = updateCell<kind, visc, hourglass, eos, flows>(c, p, v, restArea[i], e, s);
 		sxx[i] = s.sxx;
 		syy[i] = s.syy;
 		sxy[i] = s.sxy;
-		if constexpr (kind != YieldKind::elastic) eqps[i] = s.eqps;
+		if constexpr (LawOf<kind>::yields) eqps[i] = s.eqps;
 		if constexpr (hourglass) {
 			rx[i] = s.rx;
 			ry[i] = s.ry;
 		}
-		if constexpr (kind == YieldKind::johnsonCook) temperature[i] = s.temperature;
+		if constexpr (LawOf<kind>::heats) temperature[i] = s.temperature;
 		t0x[i] = out.t0x;
 		t0y[i] = out.t0y;
 		t1x[i] = out.t1x;
@@ -73,22 +73,23 @@ __attribute__((flatten)) uint64_t cellLoop(const Block& b, int j, int lo, int hi
 
 constexpr int segment = 16; ///< cells that are tried together without flow
 
-/// Johnson-Cook: logarithms and powers are more than half of a cell's cost. A segment below the yield stress of its least strained and hottest
+/// Laws that are dear: logarithms and powers are more than half of a cell's cost. A segment below the yield stress of its least strained and hottest
 /// cells is first computed without flow; if a cell comes to yield all the same, the old state is put back and computed anew.
-template <GridViscosity visc, bool hourglass, bool mieGrueneisen>
-uint64_t johnsonCookRow(const Block& b, int j, int lo, int hi, const CellConstants& constants, const RowForces& f)
+template <YieldKind kind, GridViscosity visc, bool hourglass, EosKind eos>
+uint64_t dearRow(const Block& b, int j, int lo, int hi, const CellConstants& constants, const RowForces& f)
 {
-	constexpr YieldKind kind  = YieldKind::johnsonCook;
-	uint64_t            worst = 0;
+	constexpr bool heats = LawOf<kind>::heats;
+	uint64_t       worst = 0;
 	for (int from = lo; from < hi; from += segment) {
 		const int    to = std::min(from + segment, hi), n = to - from;
 		const size_t at = b.cell(from, j);
 		double       before2 = 0, hottest = 0, leastStrain = 1e300, most = 0;
-		const double *sxx = b.sxx + at, *syy = b.syy + at, *sxy = b.sxy + at, *temperature = b.temperature + at, *eqps = b.eqps + at;
+		const double *sxx = b.sxx + at, *syy = b.syy + at, *sxy = b.sxy + at, *temperature = heats ? b.temperature + at : nullptr, *eqps = b.eqps + at;
 #pragma omp simd reduction(max : before2, hottest) reduction(min : leastStrain)
 		for (int i = 0; i < n; i++) {
 			before2 = max(before2, 3. * (sxx[i] * sxx[i] + syy[i] * syy[i] + sxx[i] * syy[i] + sxy[i] * sxy[i]));
-			hottest = max(hottest, temperature[i]), leastStrain = min(leastStrain, eqps[i]);
+			leastStrain = min(leastStrain, eqps[i]);
+			if constexpr (heats) hottest = max(hottest, temperature[i]);
 		}
 		const double least = staticYield<kind>(constants.yield, leastStrain, hottest).stress;
 		if (before2 < sqr(0.98 * least)) {
@@ -97,7 +98,7 @@ uint64_t johnsonCookRow(const Block& b, int j, int lo, int hi, const CellConstan
 			const int arrays = hourglass ? 5 : 3;
 			for (int q = 0; q < arrays; q++)
 				std::copy(state[q], state[q] + n, kept[q]);
-			const uint64_t bits = cellLoop<kind, visc, hourglass, mieGrueneisen, false>(b, j, from, to, constants, f, most);
+			const uint64_t bits = cellLoop<kind, visc, hourglass, eos, false>(b, j, from, to, constants, f, most);
 			if (most <= least) {
 				worst = std::max(worst, bits);
 				continue;
@@ -105,28 +106,26 @@ uint64_t johnsonCookRow(const Block& b, int j, int lo, int hi, const CellConstan
 			for (int q = 0; q < arrays; q++)
 				std::copy(kept[q], kept[q] + n, state[q]);
 		}
-		worst = std::max(worst, cellLoop<kind, visc, hourglass, mieGrueneisen, true>(b, j, from, to, constants, f, most));
+		worst = std::max(worst, cellLoop<kind, visc, hourglass, eos, true>(b, j, from, to, constants, f, most));
 	}
 	return worst;
 }
 
-template <YieldKind kind, GridViscosity visc, bool hourglass, bool mieGrueneisen>
+template <YieldKind kind, GridViscosity visc, bool hourglass, EosKind eos>
 uint64_t rowKernel(const Block& b, int j, int lo, int hi, const CellConstants& constants, const RowForces& f)
 {
 	double most;
-	if constexpr (kind == YieldKind::johnsonCook) return johnsonCookRow<visc, hourglass, mieGrueneisen>(b, j, lo, hi, constants, f);
-	else return cellLoop<kind, visc, hourglass, mieGrueneisen, true>(b, j, lo, hi, constants, f, most);
+	if constexpr (LawOf<kind>::isDear) return dearRow<kind, visc, hourglass, eos>(b, j, lo, hi, constants, f);
+	else return cellLoop<kind, visc, hourglass, eos, true>(b, j, lo, hi, constants, f, most);
 }
 
-template <YieldKind kind> RowKernel chooseRowKernel(const Block& b)
+template <YieldKind kind> RowKernel rowKernelOf(const Block& b)
 {
-	using V       = GridViscosity;
-	const bool v = b.material.viscosity.active() && !b.options.edgeViscosity, h = b.options.hourglass > 0, m = b.material.eos.mieGrueneisen;
-	if (v) {
-		if (h) return m ? rowKernel<kind, V::scalar, true, true> : rowKernel<kind, V::scalar, true, false>;
-		return m ? rowKernel<kind, V::scalar, false, true> : rowKernel<kind, V::scalar, false, false>;
-	}
-	if (h) return m ? rowKernel<kind, V::none, true, true> : rowKernel<kind, V::none, true, false>;
-	return m ? rowKernel<kind, V::none, false, true> : rowKernel<kind, V::none, false, false>;
+	using V      = GridViscosity;
+	const bool v = b.material.viscosity.active() && !b.options.edgeViscosity, h = b.options.hourglass > 0;
+	return dispatch(b.material.eos.kind, [&](auto eos) -> RowKernel {
+		if (v) return h ? rowKernel<kind, V::scalar, true, eos.value> : rowKernel<kind, V::scalar, false, eos.value>;
+		return h ? rowKernel<kind, V::none, true, eos.value> : rowKernel<kind, V::none, false, eos.value>;
+	});
 }
 }

@@ -7,7 +7,7 @@
 namespace mca::grid {
 
 namespace {
-	constexpr uint64_t formatVersion = 2;
+	constexpr uint64_t formatVersion = 2 ^ lawsVersion(); // changes with the laws and their constants
 
 	[[noreturn]] void damaged() { throw Error("grid: the saved state is damaged; it cannot be restored."); }
 
@@ -50,6 +50,7 @@ namespace {
 		v = T(k);
 	}
 	template <class A> void io(A& a, YieldKind& v) { choice(a, v, yieldKinds); }
+	template <class A> void io(A& a, EosKind& v) { choice(a, v, eosKinds); }
 	template <class A> void io(A& a, LoadKind& v) { choice(a, v, 3); }
 	/// no more room is made than what follows can fill
 	template <class A, class C> void resize(A& a, C& v, size_t bytesEach)

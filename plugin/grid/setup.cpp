@@ -64,7 +64,7 @@ int Grid::addBlock(const Material& m, int ni, int nj, const std::vector<double>&
 	if (!(options.hourglass >= 0 && options.hourglass <= 4))
 		throw Error("block '" + name + "': hourglass = " + std::to_string(options.hourglass) + " is not allowed; it must be in [0, 4].");
 	b->material = m;
-	b->account  = options_.account || m.eos.mieGrueneisen;
+	b->account  = options_.account || m.eos.heats();
 	b->allocate(ni, nj);
 	for (int j = 0; j <= nj; j++)
 		for (int i = 0; i <= ni; i++) {

@@ -20,15 +20,6 @@ void Workspace::fit(size_t pitch, bool edges)
 	zeros_ = arena_.array(k);
 }
 
-RowKernel chooseKernel(const Block& b)
-{
-	switch (b.material.yield.kind) {
-		case YieldKind::elastic: return chooseElastic(b);
-		case YieldKind::johnsonCook: return chooseJohnsonCook(b);
-		default: return chooseLinear(b); // perfect plasticity is linear hardening with slope zero
-	}
-}
-
 CellConstants cellConstants(const Block& b, double dtPrevious)
 {
 	CellConstants c;
@@ -39,7 +30,6 @@ CellConstants cellConstants(const Block& b, double dtPrevious)
 	c.hourglass = b.options.hourglass;
 	c.spall     = b.material.fracture.spall;
 	c.dt        = dtPrevious;
-	if (c.yield.kind == YieldKind::perfect) c.yield.B = 0;
 	return c;
 }
 
@@ -207,7 +197,7 @@ void sweepBand(Block& b, int band, const Step& s, Workspace& ws)
 	ws.fit(b.pitch, b.limiterX != nullptr);
 	const int           j0 = b.bandStart[size_t(band)], j1 = b.bandStart[size_t(band) + 1];
 	const CellConstants constants = cellConstants(b, s.dtPrevious);
-	const RowKernel     kernel    = chooseKernel(b);
+	const RowKernel     kernel    = dispatch(b.material.yield.kind, [&](auto kind) { return rowKernelOf<kind.value>(b); });
 	uint64_t            worst     = 0;
 	RowForces           below;
 	for (int j = j0; j < j1; j++) {

@@ -36,10 +36,8 @@ private:
 
 /// Cells [lo,hi) of row j: state forward to x^n, forces into f; returns the largest rate as bits (a bad cell beats every good one).
 using RowKernel = uint64_t (*)(const Block& block, int j, int lo, int hi, const CellConstants& constants, const RowForces& f);
-RowKernel chooseElastic(const Block& block);
-RowKernel chooseLinear(const Block& block);
-RowKernel chooseJohnsonCook(const Block& block);
-RowKernel chooseKernel(const Block& block);
+/// Of one flow stress; each has a source of its own (row.cpp.in).
+template <YieldKind kind> RowKernel rowKernelOf(const Block& block);
 
 CellConstants cellConstants(const Block& block, double dtPrevious);
 

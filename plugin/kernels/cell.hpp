@@ -46,7 +46,7 @@ struct CellState {
 	double sxx, syy, sxy; ///< deviatoric stress [Pa]
 	double eqps;          ///< equivalent plastic strain [-]
 	double rx, ry;        ///< hourglass force over four [N/m], turning with the cell
-	double temperature;   ///< [K], Johnson-Cook only
+	double temperature;   ///< [K], where the flow stress heats
 };
 
 /// What a cell gives to its nodes.
@@ -60,11 +60,12 @@ struct CellForces {
 /// Edge viscosity wants rho, c and the stress without q; the scalar one adds q to the pressure here.
 enum class GridViscosity { none, scalar };
 
-/// The whole update. restArea [m2]; energy: internal energy at n-1/2 per rest volume [J/m3], read only when mieGrueneisen.
+/// The whole update. restArea [m2]; energy: internal energy at n-1/2 per rest volume [J/m3], read only where the equation of state heats.
 /// flows = false leaves out the radial return: the same bits wherever `trial` stays at or below the static yield stress.
-template <YieldKind kind, GridViscosity visc, bool hourglass, bool mieGrueneisen, bool flows = true>
+template <YieldKind kind, GridViscosity visc, bool hourglass, EosKind eos, bool flows = true>
 inline CellForces updateCell(const CellConstants& c, const CellPattern& p, const CellPattern& v, double restArea, double energy, CellState& s)
 {
+	using Law = LawOf<kind>;
 	const double dt = c.dt, halfDt = 0.5 * dt;
 	// velocity gradient on the geometry of the half step: a rigid rotation then has D = 0 exactly, whatever its angle
 	const double mx20 = p.x20 - halfDt * v.x20, my20 = p.y20 - halfDt * v.y20;
@@ -81,7 +82,7 @@ inline CellForces updateCell(const CellConstants& c, const CellPattern& p, const
 	const double recip   = 1. / (area * restArea);
 	const double eps     = (area - restArea) * area * recip;
 	const double invArea = restArea * recip;
-	const double kt      = tangent(c.eos, eps);
+	const double kt      = tangent<eos>(c.eos, eps);
 	const double modulus = kt + (4. / 3.) * c.G;
 	const double rho     = c.eos.rho0 * restArea * invArea;
 	const double trace   = cellHalfTrace(p);
@@ -109,8 +110,8 @@ inline CellForces updateCell(const CellConstants& c, const CellPattern& p, const
 
 	// radial return; the hourglass force yields with the deviator
 	double stressFactor = 1., trial = 0.;
-	if constexpr (kind != YieldKind::elastic) trial = std::sqrt(3. * (3. * m * m + d * d + k * k));
-	if constexpr (kind != YieldKind::elastic && flows) {
+	if constexpr (Law::yields) trial = std::sqrt(3. * (3. * m * m + d * d + k * k));
+	if constexpr (Law::yields && flows) {
 		const Return r     = radialReturn<kind>(c.yield, trial, s.eqps, s.temperature, 3. * c.G, dt);
 		stressFactor       = r.scale;
 		m *= r.scale;
@@ -119,7 +120,7 @@ inline CellForces updateCell(const CellConstants& c, const CellPattern& p, const
 		rx *= r.scale;
 		ry *= r.scale;
 		s.eqps += r.dEqps;
-		if constexpr (kind == YieldKind::johnsonCook) s.temperature += c.yield.heatPerWork * (trial * r.scale) * r.dEqps;
+		if constexpr (Law::heats) s.temperature += c.yield.heatPerWork * (trial * r.scale) * r.dEqps;
 	}
 	s.sxx = m + d;
 	s.syy = m - d;
@@ -137,15 +138,15 @@ inline CellForces updateCell(const CellConstants& c, const CellPattern& p, const
 		viscous = closing > 0. ? viscous : 0.;
 	}
 
-	double pr = pressure(c.eos, eps);
-	if constexpr (mieGrueneisen) {
+	double pr;
+	if constexpr (LawOf<eos>::heats) {
 		// the energy is known at n-1/2, the pressure is wanted at n: half a step of work, implicit in the pressure
-		const double share  = halfDt / (2. * half * restArea);
-		const double work   = m * div + d * (lxx - lyy) + k * (lxy + lyx); // s : D
-		const double gamma  = c.eos.gamma0;
-		const double fixedP = pr * fma(0.5 * gamma, min(eps, 0.), 1.);
-		pr                  = (fixedP + gamma * (energy + share * (work - q * div))) / (1. + gamma * share * div);
-	}
+		const double  share = halfDt / (2. * half * restArea);
+		const double  work  = m * div + d * (lxx - lyy) + k * (lxy + lyx); // s : D
+		const Thermal hot   = LawOf<eos>::thermal(c.eos, eps, energy);
+		pr                  = (hot.A + hot.B * (energy + share * (work - q * div))) / (1. + hot.B * share * div);
+	} else
+		pr = pressure<eos>(c.eos, eps);
 	pr = max(pr, -c.spall);
 
 	const double sx = s.sxx - (pr + q), sy = s.syy - (pr + q);

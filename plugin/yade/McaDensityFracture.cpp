@@ -103,7 +103,7 @@ void McaDensity::settleVolumes(bool account)
 		Row&       r      = rows[size_t(entry.first)];
 		const Real J      = entry.second;
 		const auto rule   = VolumeRule(r.l->rule);
-		const bool affine = rule == VolumeRule::affine, heat = r.material->eos.mieGrueneisen;
+		const bool affine = rule == VolumeRule::affine, heat = r.material->eos.heats();
 		int        near   = 0;
 		Real       sum    = 0;
 		for (int c = r.firstContact; c < r.lastContact; c++) {
@@ -159,7 +159,7 @@ void McaDensity::filterVolumes(bool account)
 			Real pairs = 0;
 			for (const Side& s : r.link)
 				pairs += mca::pairEnergy(s.p->s[s.side], s.p->tau[s.side], now, s.p->twoG);
-			coupling += (r.material->eos.mieGrueneisen ? 0. : coldEnergyAt(r, now) - coldEnergyAt(r, J)) + mca::deviatorEnergy(r.material->G, r.d, pairs, now, r.m->stressZZ, r.l->invN) * (1. - ratio);
+			coupling += (r.material->eos.heats() ? 0. : coldEnergyAt(r, now) - coldEnergyAt(r, J)) + mca::deviatorEnergy(r.material->G, r.d, pairs, now, r.m->stressZZ, r.l->invN) * (1. - ratio);
 		}
 		r.m->volumeRatio = J;
 		r.l->offset *= ratio;

@@ -47,8 +47,9 @@ void McaDensity::volume(Row& r, bool withContacts)
 		addDirection(directions, k, r.link[k].p ? 1. : 0.);
 		addDyad(F, k, x);
 	}
-	const bool          mie = r.material->eos.mieGrueneisen;
-	const auto          step = [&](bool ofLinks) { return mie ? mca::pressureStep<true>(c, J, Jo, before, ofLinks) : mca::pressureStep<false>(c, J, Jo, before, ofLinks); };
+	const auto          byLaw = [&](auto&& f) { return mca::dispatch(c.eos.kind, f); };
+	const auto          step  = [&](bool ofLinks) { return byLaw([&](auto law) { return mca::pressureStep<law.value>(c, J, Jo, before, ofLinks); }); };
+	const auto          stiff = [&](Real ratio) { return byLaw([&](auto law) { return mca::stiffness<law.value>(c, ratio); }); };
 	mca::PressureState  now = before;
 	byRule(l.rule, [&](auto rule) {
 		if constexpr (rule.value == VolumeRule::affine) {
@@ -56,11 +57,11 @@ void McaDensity::volume(Row& r, bool withContacts)
 			now = step(l.offset > 0);
 			const auto push = mca::affinePush(c, F, l.offset, now.P, l.cell);
 			l.txx = push.xx, l.txy = push.xy, l.tyx = push.yx, l.tyy = push.yy;
-			r.stiff = mca::affineStiffness(c, J, F, directions, l.offset, nearest2);
+			r.stiff = byLaw([&](auto law) { return mca::affineStiffness<law.value>(c, J, F, directions, l.offset, nearest2); });
 			if (!withContacts) return;
 			const Real Jc = mca::contactRatio(contactSum); // contacts have a volume of their own
 			l.share       = mca::pressureShare<mca::ofContacts(rule.value)>(mca::pressure(c.eos, Jc - 1.), Jc, l.cell * (1. / nLinks));
-			r.stiff       = std::max(r.stiff, mca::stiffness(c, Jc));
+			r.stiff       = std::max(r.stiff, stiff(Jc));
 		} else {
 			Real sum = 0;
 			for (int k = 0; k < nLinks; k++)
@@ -68,7 +69,7 @@ void McaDensity::volume(Row& r, bool withContacts)
 			J       = mca::volumeRatio<rule.value>((sum + contactSum - l.rest) * l.invN);
 			now     = step(true);
 			l.share = mca::pressureShare<rule.value>(now.P, J, l.cell * l.invN);
-			r.stiff = mca::stiffness(c, J);
+			r.stiff = stiff(J);
 		}
 	});
 	l.dTheta         = mca::dilation(J, Jo);
@@ -122,9 +123,9 @@ void McaDensity::stress(Row& r)
 	mca::dispatch(material.yield.kind, [&](auto kind) { back = mca::radialReturn<kind.value>(material.yield, sigma, m.plasticStrain, m.temperature, threeG, dt); });
 	m.stressZZ = szzTrial * back.scale;
 	m.plasticStrain += back.dEqps;
-	if (material.yield.kind == mca::YieldKind::johnsonCook) m.temperature = mca::warmed(material.yield, m.temperature, sigma, back);
+	if (material.yield.heats()) m.temperature = mca::warmed(material.yield, m.temperature, sigma, back);
 	r.heated = 0;
-	if (material.eos.mieGrueneisen) {
+	if (material.eos.heats()) {
 		const Real q = mca::plasticHeat(J, sigma, back, 1. / material.eos.rho0);
 		m.dissipated += q;
 		r.heated = q * l.cell * material.eos.rho0;

@@ -99,7 +99,7 @@ void McaDensity::addForces(Scene* scene)
 		if (size_t(i) >= place.size() || place[size_t(i)] < 0) continue;
 		const Row& r = rows[size_t(place[size_t(i)])];
 		r.l->moved   = scene->dt;
-		if (r.material->eos.mieGrueneisen) { // the heat of the viscosity of links goes into the internal energy
+		if (r.material->eos.heats()) { // the heat of the viscosity of links goes into the internal energy
 			r.m->dissipated += s.linkHeat * (1. / r.material->eos.rho0) / r.l->cell;
 			if (scene->trackEnergy) heated += s.linkHeat;
 		}

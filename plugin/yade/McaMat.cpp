@@ -24,31 +24,29 @@ mca::Material McaMat::toMaterial() const
 		throw mca::Error(s.str());
 	};
 	const auto notNegative = [](Real v) { return v >= 0 && v < 1e100; };
-	need("hugoniotSlope [-]", hugoniotSlope, notNegative(hugoniotSlope), "finite and not negative (0: linear law)");
-	need("hardeningModulus [Pa]", hardeningModulus, notNegative(hardeningModulus), "finite and not negative");
 	need("heatCapacity [J/kg/K]", heatCapacity, notNegative(heatCapacity), "finite and not negative (0: no heating)");
 	need("taylorQuinney [-]", taylorQuinney, taylorQuinney >= 0 && taylorQuinney <= 1, "from 0 to 1");
 	need("frictionAngle [rad]", frictionAngle, frictionAngle >= 0 && frictionAngle <= 1.57, "from 0 to 1.57, below pi/2");
 	mca::Material m;
-	const int     law   = pick("eos", eos, { "shockAdiabat", "linear", "mieGruneisen" });
-	m.eos.rho0          = density;
-	m.eos.c0            = bulkSoundSpeed;
-	m.eos.b             = law == 1 ? 0. : hugoniotSlope;
-	m.eos.gamma0        = gruneisen;
-	m.eos.mieGrueneisen = law == 2;
-	m.G                 = shearModulus;
-	m.yield.kind        = mca::YieldKind(pick("yieldModel", yieldModel, { "elastic", "perfect", "linearHardening", "johnsonCook" }));
-	// an infinite yield stress is the elastic material: no plastic code runs
-	if (std::isinf(yieldStress) || shearModulus == 0) m.yield.kind = mca::YieldKind::elastic;
-	m.yield.A  = yieldStress;
-	m.yield.B  = m.yield.kind == mca::YieldKind::elastic || m.yield.kind == mca::YieldKind::perfect ? 0. : hardeningModulus;
-	m.yield.n  = hardeningExponent;
-	m.yield.C  = rateCoefficient;
-	m.yield.rate0 = referenceRate;
-	m.yield.m  = thermalSoftening;
-	m.yield.Tm = meltTemperature;
-	m.yield.T0 = referenceTemperature;
-	m.yield.heatPerWork = heatCapacity > 0 ? taylorQuinney / (density * heatCapacity) : 0.;
+#define MCA_NAME_OF(name, law, text) #name,
+#define MCA_TAKE(name, unit, start, range, text) to.name = name;
+#define MCA_TAKE_ALL(name, law, text) MCA_CONSTANTS_##name(MCA_TAKE)
+	{
+		mca::Eos& to = m.eos;
+		to.rho0 = density, to.c0 = bulkSoundSpeed;
+		to.kind = mca::EosKind(pick("eos", eos, { MCA_EOS_LAWS(MCA_NAME_OF) }));
+		MCA_EOS_LAWS(MCA_TAKE_ALL)
+	}
+	m.G = shearModulus;
+	{
+		mca::Yield& to = m.yield;
+		to.kind        = mca::YieldKind(pick("yieldModel", yieldModel, { MCA_FLOW_LAWS(MCA_NAME_OF) }));
+		MCA_FLOW_LAWS(MCA_TAKE_ALL)
+		// an infinite yield stress is the elastic material: no plastic code runs
+		if (std::isinf(yieldStress) || shearModulus == 0) to.kind = mca::YieldKind::elastic;
+		to.referenceTemperature = referenceTemperature;
+		to.heatPerWork          = heatCapacity > 0 ? taylorQuinney / (density * heatCapacity) : 0.;
+	}
 	m.fracture.strain = fractureStrain, m.fracture.spall = spallStrength, m.fracture.pairStress = pairStrength, m.fracture.mises = fractureStress, m.fracture.ratio = strengthRatio;
 	m.viscosity = { viscosityLinear, viscosityQuadratic };
 	m.friction  = std::tan(frictionAngle);
@@ -66,13 +64,7 @@ Real McaMat::yieldAt(Real eqps, Real rate, Real temperature) const
 	need("plasticStrain", eqps, eqps >= 0 && eqps <= 1e6, "from 0 to 1e6");
 	need("rate", rate, rate > 0 && rate <= 1e30, "above 0 and at most 1e30 [1/s]");
 	need("temperature", temperature, temperature > 0 && temperature <= 1e9, "above 0 and at most 1e9 [K]");
-	const mca::Material m = toMaterial();
-	Real                Y = 0;
-	mca::dispatch(m.yield.kind, [&](auto kind) {
-		Y = mca::staticYield<kind.value>(m.yield, eqps, temperature).stress;
-		if (kind.value == mca::YieldKind::johnsonCook) Y *= 1. + m.yield.C * std::log(std::max(rate / m.yield.rate0, 1.));
-	});
-	return Y;
+	return mca::flowStress(toMaterial().yield, eqps, rate, temperature);
 }
 
 Real McaMat::pressureAt(Real volumeRatio) const 

@@ -45,9 +45,9 @@ public:
 		((Real, volumeRatio, 1, , "J = volume / volume at rest [-]; output"))
 		((Real, equivalentStress, 0, , "Mises stress [Pa]; output"))
 		((Real, plasticStrain, 0, , "equivalent plastic strain [-]; read at every look (at the start as initial hardening), by :yref:`McaDensity` in every step"))
-		((Real, temperature, 298, , "temperature of the Johnson-Cook law [K]; material.newAssocState() sets the reference temperature; read at every look, by :yref:`McaDensity` in every step"))
+		((Real, temperature, 298, , "temperature, for flow stresses that depend on it [K]; material.newAssocState() sets the reference temperature; read at every look, by :yref:`McaDensity` in every step"))
 		((Real, stressZZ, 0, , "out-of-plane deviatoric stress [Pa]; output"))
-		((Real, dissipated, 0, , "internal energy per mass, kept for eos mieGruneisen [J/kg]; output, read in every step by :yref:`McaDensity`"))
+		((Real, dissipated, 0, , "internal energy per mass, kept where the equation of state depends on it [J/kg]; output, read in every step by :yref:`McaDensity`"))
 		((Real, strength, 0, , "factor on the strengths of the material [-]; 0 when the automaton is taken in: drawn by the engine from the material's distribution and the engine's seed; read at every look, by :yref:`McaDensity` in every step"))
 		((int, links, 0, , "links that hold [-]; output"))
 		((int, brokenLinks, 0, , "links that broke [-]; output"))
@@ -59,6 +59,11 @@ public:
 	REGISTER_CLASS_INDEX(McaState, State);
 };
 REGISTER_SERIALIZABLE(McaState);
+
+// attributes of the laws' constants, and the names a law can have, from plugin/kernels/laws/list.hpp
+#define MCA_ATTRIBUTE(name, unit, start, range, text) ((Real, name, start, , text " [" unit "]; read at every look, by a grid when the block is added"))
+#define MCA_ATTRIBUTES(name, law, text) MCA_CONSTANTS_##name(MCA_ATTRIBUTE)
+#define MCA_CHOICE(name, law, text) " '" #name "' (" text ")"
 
 class McaMat : public FrictMat {
 public:
@@ -81,25 +86,18 @@ public:
 	void setPoisson(Real v) { derive(), refuseElastic("poisson [-]", v, poisson); }
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(McaMat, FrictMat,
-		"Material of automata and of the Lagrangian grid: shock-adiabat equation of state, plasticity, fracture, contact, viscosity. "
+		"Material of automata and of the Lagrangian grid: equation of state, plasticity, fracture, contact, viscosity. "
 		"Density [kg/m3] and frictionAngle [rad] are those of :yref:`FrictMat`; young and poisson follow from the constants below and refuse other values. "
 		"All constants are checked before they are used: finite (infinite only where that means 'never') and in range; NaN is refused. "
 		":yref:`McaEngine` reads all of them at every look, that is in the first step or call after a script could change something; :yref:`McaGridEngine` when a block is added, never again. "
 		":yref:`McaDensity` reads all of them in every step, so that a change between steps counts from the next one on, for links and contacts that exist as well; strengthSpread and "
 		"strengthDistribution are read when strengths are drawn, density moreover when an automaton is taken in.",
 		((Real, bulkSoundSpeed, 0, Attr::triggerPostLoad, "c0 of the shock adiabat D = c0 + b U [m/s]; bulk modulus K = density c0^2; read at every look, by a grid when the block is added"))
-		((Real, hugoniotSlope, 0, , "b of the shock adiabat [-]; 0: linear; read at every look, by a grid when the block is added"))
-		((Real, gruneisen, 0, , "Grueneisen parameter [-] for eos 'mieGruneisen'; read at every look, by a grid when the block is added"))
-		((string, eos, "shockAdiabat", , "'shockAdiabat', 'linear' (b is ignored) or 'mieGruneisen'; read at every look, by a grid when the block is added"))
+		MCA_EOS_LAWS(MCA_ATTRIBUTES)
+		((string, eos, "shockAdiabat", , "equation of state:" MCA_EOS_LAWS(MCA_CHOICE) "; read at every look, by a grid when the block is added"))
 		((Real, shearModulus, 0, Attr::triggerPostLoad, "G [Pa]; read at every look, by a grid when the block is added"))
-		((string, yieldModel, "elastic", , "'elastic', 'perfect', 'linearHardening' or 'johnsonCook'; read at every look, by a grid when the block is added"))
-		((Real, yieldStress, std::numeric_limits<Real>::infinity(), , "initial yield stress; Johnson-Cook A [Pa]; read at every look, by a grid when the block is added"))
-		((Real, hardeningModulus, 0, , "dY/d(plastic strain) of linearHardening; Johnson-Cook B [Pa]; read at every look, by a grid when the block is added"))
-		((Real, hardeningExponent, 1, , "Johnson-Cook n [-]; read at every look, by a grid when the block is added"))
-		((Real, rateCoefficient, 0, , "Johnson-Cook C [-]; read at every look, by a grid when the block is added"))
-		((Real, referenceRate, 1, , "Johnson-Cook reference strain rate [1/s]; read at every look, by a grid when the block is added"))
-		((Real, thermalSoftening, 1, , "Johnson-Cook m [-]; read at every look, by a grid when the block is added"))
-		((Real, meltTemperature, std::numeric_limits<Real>::infinity(), , "melting temperature [K]; read at every look, by a grid when the block is added"))
+		((string, yieldModel, "elastic", , "flow stress:" MCA_FLOW_LAWS(MCA_CHOICE) "; read at every look, by a grid when the block is added"))
+		MCA_FLOW_LAWS(MCA_ATTRIBUTES)
 		((Real, referenceTemperature, 298, , "initial and reference temperature [K]; read at every look, by a grid when the block is added"))
 		((Real, heatCapacity, 0, , "specific heat [J/kg/K]; 0: no heating; read at every look, by a grid when the block is added"))
 		((Real, taylorQuinney, 0.9, , "share of plastic work that becomes heat [-] (Taylor and Quinney 1934); read at every look, by a grid when the block is added"))
@@ -119,8 +117,8 @@ public:
 		.add_property("poisson", &McaMat::poissonNow, &McaMat::setPoisson, "Poisson's ratio [-]; output: follows from density, bulkSoundSpeed and shearModulus, and another value is refused.")
 		.add_property("cP", &McaMat::longitudinalSpeed, "Longitudinal wave speed at rest [m/s].")
 		.add_property("cS", &McaMat::shearSpeed, "Shear wave speed at rest [m/s].")
-		.def("flowStress", &McaMat::yieldAt, (py::arg("plasticStrain"), py::arg("rate") = 1., py::arg("temperature") = 298.), "Yield stress [Pa] at plastic strain [-], strain rate [1/s] and temperature [K] (Johnson and Cook 1983).")
-		.def("pressure", &McaMat::pressureAt, (py::arg("volumeRatio")), "Pressure [Pa] at J = volume / volume at rest [-] on the shock adiabat; linear in tension.")
+		.def("flowStress", &McaMat::yieldAt, (py::arg("plasticStrain"), py::arg("rate") = 1., py::arg("temperature") = 298.), "Yield stress [Pa] at plastic strain [-], strain rate [1/s] and temperature [K], by yieldModel.")
+		.def("pressure", &McaMat::pressureAt, (py::arg("volumeRatio")), "Pressure [Pa] at J = volume / volume at rest [-], by eos without internal energy; 'mieGruneisen': on the shock adiabat.")
 	)
 	// clang-format on
 	REGISTER_CLASS_INDEX(McaMat, FrictMat);

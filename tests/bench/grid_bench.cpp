@@ -20,11 +20,15 @@ std::unique_ptr<Grid> scene(Feature f, int n, int threads)
 	m.eos       = { 7830., 4578., 1.33, 1.67 };
 	m.G         = 80e9;
 	m.viscosity = { 0.25, 1.2 };
-	m.yield     = { YieldKind::linearHardening, 0.792e9, 0.5e9 };
+	m.yield.kind = YieldKind::linearHardening, m.yield.yieldStress = 0.792e9, m.yield.hardeningModulus = 0.5e9;
 	BlockOptions o;
 	if (f == Feature::bare) m.yield.kind = YieldKind::elastic, m.viscosity = { 0., 0. }, o.hourglass = 0;
-	if (f == Feature::johnsonCook) m.yield = { YieldKind::johnsonCook, 0.792e9, 0.51e9, 0.26, 0.014, 1., 1.03, 1793., 298., 2.4e-7 };
-	m.eos.mieGrueneisen = f == Feature::mieGrueneisen;
+	if (f == Feature::johnsonCook) {
+		Yield& y = m.yield;
+		y.kind = YieldKind::johnsonCook, y.yieldStress = 0.792e9, y.hardeningModulus = 0.51e9, y.hardeningExponent = 0.26, y.rateCoefficient = 0.014, y.thermalSoftening = 1.03;
+		y.meltTemperature = 1793., y.heatPerWork = 2.4e-7;
+	}
+	m.eos.kind = f == Feature::mieGrueneisen ? EosKind::mieGruneisen : EosKind::shockAdiabat;
 	o.edgeViscosity     = f == Feature::edge;
 	auto g = std::make_unique<Grid>(GridOptions { f == Feature::account, false, 0.9 });
 	std::vector<double> x;

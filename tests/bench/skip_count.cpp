@@ -16,7 +16,7 @@ int main(int argc, char** argv)
 	Options           o;
 	m.viscosity = { 0.25, 1.2 };
 	if (feature == "spread") m.fracture.ratio = 3; // without a strength
-	else if (feature == "gruneisen") m.eos.gamma0 = 3;
+	else if (feature == "gruneisen") m.eos.gruneisen = 3;
 	else if (feature == "friction") m.friction = 0.9;
 	else if (feature == "contacts") o.contacts = false;
 	else if (feature == "awake") o.sleeping = false;

@@ -44,8 +44,8 @@ Material material(const Scene& s, bool second, const Units& u)
 	else
 		m.viscosity = { 0., 0. };
 	if (s.breaks) m.fracture.strain = 0.2, m.fracture.spall = 3e9 * u.stress();
-	m.eos.rho0 *= u.density, m.eos.c0 *= u.speed(), m.G *= u.stress(), m.yield.A *= u.stress(), m.yield.B *= u.stress();
-	m.yield.rate0 /= u.duration, m.yield.heatPerWork /= u.stress();
+	m.eos.rho0 *= u.density, m.eos.c0 *= u.speed(), m.G *= u.stress(), m.yield.yieldStress *= u.stress(), m.yield.hardeningModulus *= u.stress();
+	m.yield.referenceRate /= u.duration, m.yield.heatPerWork /= u.stress();
 	return m;
 }
 

@@ -37,7 +37,7 @@ rc::Gen<Scene> scenes()
 void make(Grid& g, const Scene& s)
 {
 	Material m          = steel(YieldKind(s.kind));
-	m.eos.mieGrueneisen = s.mie;
+	m.eos.kind = s.mie ? EosKind::mieGruneisen : EosKind::shockAdiabat;
 	m.viscosity         = s.viscosity ? Viscosity { 0.2, 1.2 } : Viscosity { 0., 0. };
 	BlockOptions o;
 	o.edgeViscosity = s.edge;

@@ -114,8 +114,8 @@ RC_GTEST_PROP(InterfaceProperty, balancesAreExact, ())
 	m.eos               = { 7830., 4578., 1.33, 1.67 };
 	m.G                 = 80e9;
 	m.yield.kind        = *rc::gen::element(YieldKind::elastic, YieldKind::perfect, YieldKind::linearHardening);
-	m.yield.A           = m.yield.kind == YieldKind::elastic ? m.yield.A : 0.5e9;
-	m.yield.B           = m.yield.kind == YieldKind::linearHardening ? 0.5e9 : 0.;
+	m.yield.yieldStress           = m.yield.kind == YieldKind::elastic ? m.yield.yieldStress : 0.5e9;
+	m.yield.hardeningModulus           = m.yield.kind == YieldKind::linearHardening ? 0.5e9 : 0.;
 	m.viscosity         = *rc::gen::arbitrary<bool>() ? Viscosity { 0.25, 1.2 } : Viscosity { 0., 0. };
 	const double angle  = *rc::gen::inRange(0, 628) * 0.01;
 	const int    h = *rc::gen::inRange(1, 5), cells = *rc::gen::inRange(2, 6);

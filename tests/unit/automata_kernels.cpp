@@ -34,7 +34,7 @@ TEST(AutomataEos, AdiabatFulfilsTheHugoniotRelations)
 {
 	const Eos e = copper();
 	for (double U : { 1e-3, 1., 100., 500., 1500., 3000. }) {
-		const double D = e.c0 + e.b * U, eps = -U / D;
+		const double D = e.c0 + e.hugoniotSlope * U, eps = -U / D;
 		ASSERT_GT(eps, e.clampStrain());
 		EXPECT_NEAR(pressure(e, eps), e.rho0 * D * U, 1e-12 * e.rho0 * D * U + 1e-16 * e.bulkModulus()) << U;
 	}
@@ -46,7 +46,7 @@ TEST(AutomataEos, TangentIsTheDerivativeAndEnergyTheIntegral)
 {
 	for (double b : { 0., 1.489 }) {
 		Eos e = copper();
-		e.b   = b;
+		e.hugoniotSlope   = b;
 		const double K = e.bulkModulus();
 		for (double eps : { -0.62, -0.57, -0.5, -0.3, -0.1, -0.03, -0.02, -1e-3, -1e-6, 1e-6, 0.02, 0.3 }) {
 			const double h = 1e-3 * std::min(std::fabs(eps), 0.03);
@@ -64,7 +64,7 @@ TEST(AutomataEos, ClampIsContinuousCountedAndFinite)
 {
 	const Eos    e = copper();
 	const double c = e.clampStrain();
-	EXPECT_NEAR(1. + e.b * c, e.clampAt, 1e-15);
+	EXPECT_NEAR(1. + e.hugoniotSlope * c, e.clampAt, 1e-15);
 	EXPECT_NEAR(pressure(e, c * (1 + 1e-12)), pressure(e, c), 1e-10 * pressure(e, c));
 	EXPECT_FALSE(clamped(e, c * (1 - 1e-12)));
 	EXPECT_TRUE(clamped(e, c * (1 + 1e-12)));
@@ -78,10 +78,10 @@ TEST(AutomataEos, MieGrueneisenOnTheHugoniotIsTheHugoniot)
 	const Eos e = copper(); // on the shock adiabat the internal energy is P (V0 - V)/2, and the pressure must be P_H again
 	for (double eps : { -1e-3, -0.05, -0.2 }) {
 		const double energy = 0.5 * pressure(e, eps) * -eps / e.rho0;
-		EXPECT_NEAR(pressureMieGrueneisen(e, eps, energy), pressure(e, eps), 1e-12 * pressure(e, eps));
+		EXPECT_NEAR(hotPressure<EosKind::mieGruneisen>(e, eps, energy), pressure(e, eps), 1e-12 * pressure(e, eps));
 	}
-	EXPECT_DOUBLE_EQ(pressureMieGrueneisen(e, 0.01, 0.), pressure(e, 0.01));
-	EXPECT_DOUBLE_EQ(pressureMieGrueneisen(e, 0., 1e5), e.gamma0 * e.rho0 * 1e5);
+	EXPECT_DOUBLE_EQ(hotPressure<EosKind::mieGruneisen>(e, 0.01, 0.), pressure(e, 0.01));
+	EXPECT_DOUBLE_EQ(hotPressure<EosKind::mieGruneisen>(e, 0., 1e5), e.gruneisen * e.rho0 * 1e5);
 }
 
 TEST(AutomataYield, StaticYieldStressIsJohnsonCook)
@@ -91,14 +91,15 @@ TEST(AutomataYield, StaticYieldStressIsJohnsonCook)
 		for (double T : { 298., 600., 1500., 1793., 3000. }) {
 			const double hom = std::min(std::max((T - 298.) / (1793. - 298.), 0.), 1.), soft = 1 - std::pow(hom, 1.03);
 			const auto   s = staticYield<YieldKind::johnsonCook>(y, ep, T);
-			EXPECT_NEAR(s.stress, (y.A + y.B * std::pow(ep, y.n)) * soft, 1e-13 * y.A);
-			EXPECT_NEAR(s.slope, y.B * y.n * std::pow(ep, y.n - 1) * soft, 1e-12 * y.B * y.n * std::pow(ep, y.n - 1));
+			EXPECT_NEAR(s.stress, (y.yieldStress + y.hardeningModulus * std::pow(ep, y.hardeningExponent)) * soft, 1e-13 * y.yieldStress);
+			const double slope = y.hardeningModulus * y.hardeningExponent * std::pow(ep, y.hardeningExponent - 1);
+			EXPECT_NEAR(s.slope, slope * soft, 1e-12 * slope);
 		}
-	EXPECT_EQ(staticYield<YieldKind::johnsonCook>(y, 0., 298.).stress, y.A);
+	EXPECT_EQ(staticYield<YieldKind::johnsonCook>(y, 0., 298.).stress, y.yieldStress);
 	Yield h = y;
-	h.kind = YieldKind::linearHardening, h.B = 2e9;
-	EXPECT_DOUBLE_EQ(staticYield<YieldKind::linearHardening>(h, 0.25, 0.).stress, h.A + 0.5e9);
-	EXPECT_EQ(staticYield<YieldKind::perfect>(h, 7., 0.).stress, h.A);
+	h.kind = YieldKind::linearHardening, h.hardeningModulus = 2e9;
+	EXPECT_DOUBLE_EQ(staticYield<YieldKind::linearHardening>(h, 0.25, 0.).stress, h.yieldStress + 0.5e9);
+	EXPECT_EQ(staticYield<YieldKind::perfect>(h, 7., 0.).stress, h.yieldStress);
 	EXPECT_TRUE(std::isinf(staticYield<YieldKind::elastic>(h, 7., 0.).stress));
 }
 
@@ -126,7 +127,7 @@ TEST(AutomataYield, ReturnMappingAgreesWithABisection)
 					}
 					// consistency trial - 3G e = (Y0 + slope e)(1 + C ln max(rate, 1)), hardening linear over one step
 					const auto gap = [&](double e) {
-						const double f = kind == YieldKind::johnsonCook ? 1 + y.C * std::log(std::max(e / (dt * y.rate0), 1.)) : 1.;
+						const double f = kind == YieldKind::johnsonCook ? 1 + y.rateCoefficient * std::log(std::max(e / (dt * y.referenceRate), 1.)) : 1.;
 						return trial - threeG * e - (Y0 + slope * e) * f;
 					};
 					double lo = 0, hi = trial / threeG;

@@ -78,8 +78,8 @@ TEST(AutomataStep, FeaturesThatArePresentButNeverActChangeNoBit)
 		if (k == 2) m.fracture.spall = 1e30;
 		if (k == 3) m.fracture.pairStress = 1e30;
 		if (k == 4) m.fracture.mises = 1e30, m.fracture.ratio = 3;
-		if (k == 5) m.yield = steel(YieldKind::perfect).yield, m.yield.A = 1e30;
-		if (k == 6) m.yield = steel(YieldKind::johnsonCook).yield, m.yield.A = 1e30;
+		if (k == 5) m.yield = steel(YieldKind::perfect).yield, m.yield.yieldStress = 1e30;
+		if (k == 6) m.yield = steel(YieldKind::johnsonCook).yield, m.yield.yieldStress = 1e30;
 		auto list = packing(d, 14, 14, m);
 		shake(list, 30., 5);
 		Solver  s;

@@ -90,7 +90,7 @@ TEST(AutomataUniform, HookeIsExactInEveryOrientation)
 				const double exx = H[0], eyy = H[3], exy = 0.5 * (H[1] + H[2]), tr = exx + eyy, dxx = exx - tr / 3, dyy = eyy - tr / 3, dzz = -tr / 3;
 				const double mises = 2 * G * std::sqrt(1.5 * (dxx * dxx + dyy * dyy + dzz * dzz + 2 * exy * exy)), scale = K + 2 * G;
 				Material     lin = m;
-				lin.eos.b = 0; // in compression and tension the same, so that the expression is even
+				lin.eos.hugoniotSlope = 0; // in compression and tension the same, so that the expression is even
 				const auto at = [&](double h) { return deform(scaled(H, h), angle, lin, rule, 16, 1); };
 				const auto odd = [&](auto pick) { return limit([&](double h) { return (pick(at(h)) - pick(at(-h))) / (2 * h); }); };
 				EXPECT_NEAR(odd([](const Field& f) { return f.P; }), -K * tr, 2e-12 * scale) << angle;
@@ -166,7 +166,7 @@ TEST(AutomataUniform, YieldSurfaceIsMises)
 	for (double angle : angles)
 		for (auto& H : modes) {
 			const Field f = deform(scaled(H, 0.02), angle, m, VolumeRule::affine, 16, 1);
-			EXPECT_NEAR(f.Mises / m.yield.A, 1., 1e-12) << angle;
+			EXPECT_NEAR(f.Mises / m.yield.yieldStress, 1., 1e-12) << angle;
 		}
 }
 

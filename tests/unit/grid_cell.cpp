@@ -82,7 +82,7 @@ TEST(GridCell, RigidRotationLeavesStressUnchanged)
 		const CellPattern p0 = pattern(x, y), p = pattern(X, Y), v = pattern(vx, vy);
 		CellState         s  = { 3e8, -1e8, 2e8, 0, 1e5, -2e5, 0 };
 		const CellState   s0 = s;
-		updateCell<YieldKind::elastic, GridViscosity::scalar, true, false>(c, p, v, cellArea(p0), 0., s);
+		updateCell<YieldKind::elastic, GridViscosity::scalar, true, EosKind::shockAdiabat>(c, p, v, cellArea(p0), 0., s);
 		const double C = std::cos(angle), S = std::sin(angle);
 		const double xx = C * C * s0.sxx + S * S * s0.syy - 2 * C * S * s0.sxy, yy = S * S * s0.sxx + C * C * s0.syy + 2 * C * S * s0.sxy;
 		const double xy = C * S * (s0.sxx - s0.syy) + (C * C - S * S) * s0.sxy;
@@ -106,7 +106,7 @@ TEST(GridCell, HourglassStiffnessOfTheSquareIsTheBilinearOne)
 	for (int k = 0; k < 4; k++) vx[k] = a * hg[k], X[k] = x[k] + vx[k];
 	CellState         s  = { 0, 0, 0, 0, 0, 0, 0 };
 	const CellPattern p  = cellPattern(X[0], y[0], X[1], y[1], X[2], y[2], X[3], y[3]), v = cellPattern(vx[0], 0, vx[1], 0, vx[2], 0, vx[3], 0);
-	updateCell<YieldKind::elastic, GridViscosity::none, true, false>(c, p, v, h * h, 0., s);
+	updateCell<YieldKind::elastic, GridViscosity::none, true, EosKind::shockAdiabat>(c, p, v, h * h, 0., s);
 	const double lambda = m.eos.bulkModulus() - 2. / 3. * m.G;
 	EXPECT_NEAR(s.rx, 0.25 * (4. / 3.) * (lambda + 3 * m.G) * a, 1e-5 * s.rx);
 	EXPECT_NEAR(s.ry, 0., 1e-9 * s.rx);
@@ -117,6 +117,6 @@ TEST(GridCell, InvertedCellShowsInTheRate)
 	CellConstants c;
 	c.eos = steel().eos, c.G = 80e9, c.dt = 1e-8;
 	CellState    s = { 0, 0, 0, 0, 0, 0, 0 };
-	const double r = updateCell<YieldKind::elastic, GridViscosity::none, false, false>(c, cellPattern(0, 0, 0, 1, 1, 1, 1, 0), { 0, 0, 0, 0, 0, 0 }, 1., 0., s).rate;
+	const double r = updateCell<YieldKind::elastic, GridViscosity::none, false, EosKind::shockAdiabat>(c, cellPattern(0, 0, 0, 1, 1, 1, 1, 0), { 0, 0, 0, 0, 0, 0 }, 1., 0., s).rate;
 	EXPECT_FALSE(std::isfinite(r));
 }

@@ -17,10 +17,10 @@ inline Material steel(YieldKind kind = YieldKind::elastic)
 	m.G                  = 80e9;
 	m.yield.kind         = kind;
 	m.viscosity          = { 0.1, 1.2 };
-	if (kind != YieldKind::elastic) m.yield.A = 0.792e9;
-	if (kind == YieldKind::linearHardening) m.yield.B = 0.5e9;
+	if (kind != YieldKind::elastic) m.yield.yieldStress = 0.792e9;
+	if (kind == YieldKind::linearHardening) m.yield.hardeningModulus = 0.5e9;
 	if (kind == YieldKind::johnsonCook) {
-		m.yield.B = 0.51e9, m.yield.n = 0.26, m.yield.C = 0.014, m.yield.m = 1.03, m.yield.Tm = 1793., m.yield.heatPerWork = 0.9 / (7830. * 477.);
+		m.yield.hardeningModulus = 0.51e9, m.yield.hardeningExponent = 0.26, m.yield.rateCoefficient = 0.014, m.yield.thermalSoftening = 1.03, m.yield.meltTemperature = 1793., m.yield.heatPerWork = 0.9 / (7830. * 477.);
 	}
 	return m;
 }

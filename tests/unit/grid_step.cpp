@@ -9,7 +9,7 @@ namespace {
 void scene(Grid& g, YieldKind kind, bool mie = false, bool edge = false, int n = 40)
 {
 	Material m          = steel(kind), w = steel(kind);
-	m.eos.mieGrueneisen = mie;
+	m.eos.kind = mie ? EosKind::mieGruneisen : EosKind::shockAdiabat;
 	w.eos               = { 17600., 4030., 1.237, 1.54 };
 	w.G                 = 124e9;
 	BlockOptions o;

@@ -80,12 +80,12 @@ struct PressureState {
 };
 /// J: new volume ratio, Jo: that of the step before, old: pressure and energy then. ofLinks: the volume is that of links. Contacts push by the cold curve
 /// alone: so does an automaton without links work, and its internal energy keeps the rest.
-template <bool mie> MCA_INLINE PressureState pressureStep(const VolumeConstants& c, double J, double Jo, PressureState old, bool ofLinks)
+template <EosKind law> MCA_INLINE PressureState pressureStep(const VolumeConstants& c, double J, double Jo, PressureState old, bool ofLinks)
 {
-	PressureState now { pressure(c.eos, J - 1.), old.e };
-	if constexpr (mie) {
+	PressureState now { pressure<law>(c.eos, J - 1.), old.e };
+	if constexpr (LawOf<law>::heats) {
 		double       e   = old.e;
-		const double hot = pressureWithWork(c.eos, J - 1., J - Jo, old.P, e), work = 0.5 * (old.P + now.P) * (J - Jo) * c.perRho;
+		const double hot = pressureWithWork<law>(c.eos, J - 1., J - Jo, old.P, e), work = 0.5 * (old.P + now.P) * (J - Jo) * c.perRho;
 		now = { ofLinks ? hot : now.P, ofLinks ? e : old.e - work };
 	}
 	return now;
@@ -94,9 +94,9 @@ template <bool mie> MCA_INLINE PressureState pressureStep(const VolumeConstants&
 MCA_INLINE double dilation(double J, double Jo) { return 2. * (J - Jo) / (J + Jo); }
 MCA_INLINE bool   validVolume(double J) { return J > 0. && J < 1e6; } // false for NaN as well
 /// (3) over the density: square of a longitudinal wave's speed in the rest frame [m2/s2]; bulk, shear >= 1: how much stiffer than in the perfect packing.
-MCA_INLINE double stiffness(const VolumeConstants& c, double J, double bulk = 1., double shear = 1.)
+template <EosKind law> MCA_INLINE double stiffness(const VolumeConstants& c, double J, double bulk = 1., double shear = 1.)
 {
-	return (tangent(c.eos, J - 1.) * bulk + c.G43 * shear) * c.perRho / J;
+	return (tangent<law>(c.eos, J - 1.) * bulk + c.G43 * shear) * c.perRho / J;
 }
 
 /// The volume that contacts alone give an automaton [-]; sum of their volume terms.
@@ -134,10 +134,11 @@ MCA_INLINE Tensor<double> affinePush(const VolumeConstants& c, const Tensor<doub
 }
 /// stiffness(), and how much stiffer than in the perfect packing: the volume by the sum of (dJ/dr_k)^2, the pair law by the closest link. directions: sum
 /// of e_k (x) e_k; nearest2 = smallest r^2 [m2]. Covers edges and corners of free surfaces up to nu = 0.49, measured; beyond 4 what is torn and sheared.
+template <EosKind law>
 MCA_INLINE double affineStiffness(const VolumeConstants& c, double J, const Tensor<double>& F, const Symmetric<double>& e, double factor, double nearest2)
 {
 	const double spread = e.xx * (F.yy * F.yy + F.yx * F.yx) - 2. * e.xy * (F.yy * F.xy + F.yx * F.xx) + e.yy * (F.xy * F.xy + F.xx * F.xx);
 	const double one = max(factor * factor * spread * c.perArea * (1. / nLinks), 1.), bulk = max(min(one * one, 4.), one);
-	return stiffness(c, J, bulk, max(0.5 * c.d2 / nearest2, 1.));
+	return stiffness<law>(c, J, bulk, max(0.5 * c.d2 / nearest2, 1.));
 }
 }

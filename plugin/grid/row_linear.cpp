@@ -1,6 +1,0 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
-#include "rowkernel.hpp"
-
-namespace mca::grid {
-RowKernel chooseLinear(const Block& block) { return chooseRowKernel<YieldKind::linearHardening>(block); }
-}
