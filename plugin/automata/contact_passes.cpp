@@ -66,7 +66,7 @@ namespace {
 		for (long c = 0; c < n; c++) {
 			const int32_t     i = V.owner[c], j = V.other[c];
 			const Vec<double> r = { V.dx[c], V.dy[c] }, v = { velX[j] - velX[i], velY[j] - velY[i] };
-			const double      q = V.arm[c], spin = fma(omega[i], q, omega[j] * (1. - q)) * dt, touch = max(V.pushing[c], V.pushing[V.reverse[c]]);
+			const double      q = V.arm[c], spin = pairSpin(omega[i], omega[j], q, dt), touch = max(V.pushing[c], V.pushing[V.reverse[c]]);
 			const double      perOldJ = perOldRatio(dTheta[i], J[i]);
 			const Pair<double> old { V.s[c] * perOldJ, V.tau[c] * perOldJ }, all = trialStress(old, strainIncrement(r, v * dt, spin), pairDilation(dTheta[i], dTheta[j]), V.twoG[c]);
 			const Pair<double> now { touch > 0. ? all.normal : 0., touch > 0. ? all.shear : 0. };
@@ -121,7 +121,7 @@ namespace {
 			const double       d = V.d[c], inv = 1. / V.r2[c], on = V.touch[c], area = pairArea(1., d);
 			const Pair<double> both { area * (V.s[c] + V.s[r]), area * (V.tau[c] + V.tau[r]) };
 			const double       q  = on * viscousCoefficient(V.along[c], inv, V.viscLinear[c], V.viscQuadratic[c], Lattice::width(d)), pr = on * V.press[c];
-			const Vec<double>  f  = contactForce(x, fma(on * both.normal, inv, q - pr), on * both.shear * inv);
+			const Vec<double>  f  = contactForce(x, Pair<double> { on * both.normal, on * both.shear }, inv, q, pr);
 			V.a[c] = f.x, V.b[c] = f.y;
 			t[c]   = on * V.arm[c] * both.shear;
 			if (account) t[n + c] = -pr * x.x, t[2 * n + c] = -pr * x.y, t[3 * n + c] = q * x.x, t[4 * n + c] = q * x.y;
