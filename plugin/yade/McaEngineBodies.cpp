@@ -65,6 +65,7 @@ void McaEngine::settleIn(Scene* scene)
 /// Bodies of a loaded engine.
 void McaEngine::bind(Scene* scene)
 {
+	checkNumbers(*scene);
 	vector<shared_ptr<Body>> found;
 	for (int id : order) {
 		if (solver->indexOf(id) < 0) throw mca::Error("McaEngine: body " + std::to_string(id) + " stands in the saved engine's list, but not in its state; the file is damaged or was changed.");
