@@ -53,7 +53,7 @@ def test_table(tmp_path, capsys, monkeypatch):
 
 def test_aRunThatFailsIsReportedNotLost(capsys, monkeypatch):
 	monkeypatch.setattr(table1, 'THICKNESSES', (15.,))
-	monkeypatch.setattr(table1, 'child', lambda words, json_, threads: (_ for _ in ()).throw(RuntimeError('no luck')))
+	monkeypatch.setattr(table1, 'child', lambda words, threads: (_ for _ in ()).throw(RuntimeError('no luck')))
 	assert cli.main(['table1', '--spacing', '5']) == 1
 	assert 'no luck' in capsys.readouterr().err
 
