@@ -84,3 +84,61 @@ def test_clonesATreeThatBelongsToSomebodyElse(tmp_path, monkeypatch):
 	head = clean.git('-C', str(tmp_path / 'b'), 'rev-parse', 'HEAD').stdout
 	done = clean.git('clone', '-q', '--no-hardlinks', str(tmp_path / 'b'), str(tmp_path / 'c'))
 	assert done.returncode == 0 and len(head) == 41 and clean.git('-C', str(tmp_path / 'c'), 'rev-parse', 'HEAD').stdout == head, done.stdout
+
+
+class Machine(clean.Root):
+	"""A root in which nothing is made, entered or removed; `answer(root, command)` gives status and output of what is typed."""
+	answer = None
+
+	def make(self): pass
+
+	def clone(self, script): (self.path / 'exchange').mkdir(parents=True, exist_ok=True)
+
+	def remove(self): pass
+
+	def shell(self, user, command, folder):
+		if ' save ' in command:
+			for name in ('engine.xml', 'law2.yade.gz', 'engine.json'):
+				(self.path / 'exchange' / ('%s-%s' % (self.suite, name))).write_text('')
+		return (*type(self).answer(self, command), 1.5)
+
+
+def told(monkeypatch, capsys, tmp_path, answer, *arguments):
+	"""(status, lines) of `tests/run clean` on such machines."""
+	Machine.answer = staticmethod(answer)
+	monkeypatch.setattr(clean, 'Root', Machine)
+	monkeypatch.setattr(clean, 'ROOTS', tmp_path)
+	monkeypatch.setattr(clean, 'mayMakeRoots', lambda: None)
+	monkeypatch.setattr(sys, 'argv', ['clean', *arguments])
+	status = clean.main()
+	return status, capsys.readouterr().out.splitlines()
+
+
+def good(root, command):
+	return 2 if command.endswith('pyscripts/run') else 0, 'EXCHANGE loads' if ' load ' in command else ''
+
+
+def test_closingLineWhenAllIsWell(monkeypatch, capsys, tmp_path):
+	status, lines = told(monkeypatch, capsys, tmp_path, good)
+	assert status == 0 and lines[-1] == 'clean: %d passed, 0 failed' % sum(' ok ' in x for x in lines), lines
+	assert sum('loads bookworm-' in x and x.startswith('trixie') for x in lines) == 2 and sum('loads trixie-' in x and x.startswith('bookworm') for x in lines) == 2, lines
+	assert any(x.startswith('trixie anna') and x.endswith('  ok      root: /home/anna/yade-mca/pyscripts/run penetration') and ' 1.5 s ' in x for x in lines), lines
+
+
+def test_closingLineWhenACommandFails(monkeypatch, capsys, tmp_path):
+	answer = lambda root, command: (1, 'it broke') if root.suite == 'trixie' and command == 'pyscripts/run docs' else good(root, command)
+	status, lines = told(monkeypatch, capsys, tmp_path, answer)
+	assert status == 1 and re.fullmatch(r'clean: \d+ passed, 1 failed', lines[-1]) and '    it broke' in lines, lines
+	assert not any('are saved' in x for x in lines), 'files are exchanged between good roots only'
+
+
+def test_closingLineWhenTheMirrorStopsAnswering(monkeypatch, capsys, tmp_path):
+	answer = lambda root, command: (100, 'E: Failed to fetch http://x') if root.suite == 'trixie' else good(root, command)
+	status, lines = told(monkeypatch, capsys, tmp_path, answer)
+	assert status == 0 and re.fullmatch(r'clean: \d+ passed, 0 failed, 1 skipped', lines[-1]) and any('skipped: the mirror' in x for x in lines), lines
+
+
+def test_closingLineWhenTheTimeIsOver(monkeypatch, capsys, tmp_path):
+	def late(root, command): raise clean.Broken('the time is over, what is left was not tried')
+	status, lines = told(monkeypatch, capsys, tmp_path, late, 'trixie')
+	assert status == 1 and lines[-1] == 'clean: 0 passed, 1 failed', lines

@@ -172,13 +172,13 @@ def damage(random, form, data):
 
 
 def _unpacked(data):
-	d, out = zlib.decompressobj(31), b''
+	d, out = zlib.decompressobj(31), bytearray()
 	try:
-		for i in range(0, len(data), 1024):
-			out += d.decompress(data[i:i + 1024])
+		for i in range(len(data)):  # one by one: an error takes with it what its piece had given
+			out += d.decompress(data[i:i + 1])
 	except zlib.error:
 		pass
-	return out
+	return bytes(out)
 
 
 def _ours(scene, bad):
