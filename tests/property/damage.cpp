@@ -135,7 +135,7 @@ TEST(Damage, AutomataWithContactsAndBrokenLinks)
 TEST(Damage, AutomataOfAllKinds)
 {
 	Material a = steel(YieldKind::johnsonCook), b = tungsten();
-	a.eos.mieGrueneisen         = true;
+	a.eos.kind                  = EosKind::mieGruneisen;
 	std::vector<Automaton> list = packing(1e-3, 9, 9, a, {}, 0, 0, 1);
 	append(list, packing(1e-3, 6, 6, b, { 1e-3, -6e-3, 0. }, 100, 1, 2));
 	shake(list, 50., 3);
@@ -230,7 +230,7 @@ TEST(Damage, GridWithBoundariesAndGauges)
 {
 	Grid     g;
 	Material m = gridtest::steel(YieldKind::johnsonCook), n = gridtest::steel(YieldKind::linearHardening);
-	m.eos.mieGrueneisen = true;
+	m.eos.kind = EosKind::mieGruneisen;
 	BlockOptions edges;
 	edges.edgeViscosity = true;
 	g.addRectangle(m, line(0, 0.02, 20), line(0, 0.01, 34));
