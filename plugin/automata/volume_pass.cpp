@@ -16,11 +16,11 @@ namespace {
 			V.record[nodeSize * l + 5] = V.dTheta[l];
 	}
 
-	template <VolumeRule rule, bool intact, bool mixed, EosKind law> void sumRule(const BlockView& V, const double* contactSum, bool init, BlockResult& out)
+	template <VolumeRule rule, bool intact, bool mixed, EosKind law> void sumRule(const BlockView& V, const Store& S, const double* contactSum, bool init, BlockResult& out)
 	{
 		constexpr bool        hot = LawOf<law>::heats;
 		const VolumeConstants c(V.material, V.d);
-		const double *        X = V.x - V.base, *Y = V.y - V.base, *D = V.diameterOfAll, d = V.d;
+		const double *        X = S.x.data(), *Y = S.y.data(), *D = V.diameterOfAll, d = V.d;
 		const int32_t *       nb = V.neighbour, *flags = V.flags;
 		alignas(64) double    sums[blockSize];
 		double                nearest = 1e300;
@@ -149,7 +149,7 @@ void volumePass(Store& S, size_t b, VolumeRule rule, const Extra& X, bool init, 
 	dispatch(V.material.eos.kind, [&](auto law) {
 		dispatch(rule, [&](auto r) {
 			if constexpr (r.value == VolumeRule::affine) choices([&](auto intact) { affineRule<intact.value, law.value>(V, contactSum, init, out); }, V.block.intact);
-			else choices([&](auto intact, auto mixed) { sumRule<r.value, intact.value, mixed.value, law.value>(V, contactSum, init, out); }, V.block.intact, V.block.mixed);
+			else choices([&](auto intact, auto mixed) { sumRule<r.value, intact.value, mixed.value, law.value>(V, S, contactSum, init, out); }, V.block.intact, V.block.mixed);
 		});
 	});
 	publishDilation(V);
