@@ -41,9 +41,10 @@ namespace {
 				int32_t        back[lanes];
 				reverseSlots(j, k, back);
 				const Motion other = gatherMotion(V.node, j);
-				Pair<v8>     theirs {};
+				v8           normal {}, shear {};
 				for (int l = 0; l < lanes; l++)
-					theirs.normal[l] = s[back[l]], theirs.shear[l] = tau[back[l]];
+					normal[l] = s[back[l]], shear[l] = tau[back[l]];
+				const Pair<v8> theirs { normal, shear };
 				const Vec<v8> r   = other.position - x;
 				v8            dij = splat(d);
 				if (mixed)
