@@ -12,7 +12,9 @@ void range(const mca::Range& r)
 {
 	std::printf("\"range\": [");
 	number(r.least), std::printf(", "), number(r.most);
-	std::printf("], \"ends\": [%s, %s, %s], \"words\": \"%s\"", r.withLeast ? "true" : "false", r.withMost ? "true" : "false", r.infinite ? "true" : "false", r.words);
+	std::printf(
+		"], \"ends\": [%s, %s, %s], \"words\": \"%s\"", r.withLeast ? "true" : "false", r.withMost ? "true" : "false", r.infinite ? "true" : "false",
+		r.words);
 }
 void constant(const char* name, const char* unit, double start, const mca::Range& r, const char* text)
 {
@@ -24,7 +26,7 @@ void use(const char* name, const mca::Range& r)
 	std::printf("%s\n    {\"name\": \"%s\", ", comma, name);
 	range(r), std::printf("}"), comma = ",";
 }
-}
+} // namespace
 
 #define MCA_PRINT_CONSTANT(name, unit, start, range, text) constant(#name, unit, start, range, text);
 #define MCA_PRINT_USE(name, range) use(#name, range);

@@ -43,7 +43,7 @@ double Solver::equivalentStress(size_t i) const
 	double       sq = 0;
 	for (int k = 0; k < nLinks; k++)
 		if (holds(S.flags[i], k)) sq += linkWeight(S.flags[i], k) * (sqr(S.s[linkSlot(i, k)]) + sqr(S.tau[linkSlot(i, k)])) / sqr(S.J[i]);
-	return std::sqrt(equivalentStress2(sq * S.invN[i], S.szz[i]));
+	return mca::equivalentStress(sq * S.invN[i], S.szz[i]);
 }
 
 double Solver::deviatorEnergyOf(size_t i) const

@@ -38,71 +38,89 @@ namespace {
 		dispatch(rule, [&](auto r) { f(std::integral_constant<VolumeRule, ofContacts(r.value)> {}); });
 	}
 
+	// One half-contact each, in functions of their own, with the view private to the thread: a vector or pair declared in the body of a parallel loop, or a
+	// view that is shared, keeps it from being vectorised.
+
+	template <VolumeRule rule> MCA_INLINE void volumeTermOf(const View& V, const double* x, const double* y, long c)
+	{
+		const int32_t     i = V.owner[c], j = V.other[c];
+		const Vec<double> r    = { x[j] - x[i], y[j] - y[i] };
+		const double      rest = V.rest[c], d = V.d[c], r2 = dot(r, r), on = pushes(r2, rest, d);
+		V.dx[c] = r.x, V.dy[c] = r.y, V.r2[c] = r2;
+		V.pushing[c] = on;
+		V.a[c]       = on > 0. ? volumeTerm<rule>(rest, r2) : 0.;
+		V.rest[c]    = restAfter(rest, r2, d);
+		V.b[c]       = on > 0. ? r2 / (rest * rest) : 1.;
+	}
 	template <VolumeRule rule> void volumeTerms(const Store& S, Contacts& C)
 	{
 		const long    n = long(C.size());
 		const View    V(C);
 		const double *x = S.x.data(), *y = S.y.data();
-#pragma omp parallel for simd schedule(static) if (n >= parallelFrom)
-		for (long c = 0; c < n; c++) {
-			const int32_t     i = V.owner[c], j = V.other[c];
-			const Vec<double> r    = { x[j] - x[i], y[j] - y[i] };
-			const double      rest = V.rest[c], d = V.d[c], r2 = dot(r, r), on = pushes(r2, rest, d);
-			V.dx[c] = r.x, V.dy[c] = r.y, V.r2[c] = r2;
-			V.pushing[c] = on;
-			V.a[c]       = on > 0. ? volumeTerm<rule>(rest, r2) : 0.;
-			V.rest[c]    = restAfter(rest, r2, d);
-			V.b[c]       = on > 0. ? r2 / (rest * rest) : 1.;
-		}
+#pragma omp parallel for simd schedule(static) firstprivate(V) if (n >= parallelFrom)
+		for (long c = 0; c < n; c++)
+			volumeTermOf<rule>(V, x, y, c);
 	}
 
+	/// What the trial stresses read of the automata.
+	struct Movers {
+		const double *vx, *vy, *omega, *dTheta, *J;
+		explicit Movers(const Store& S) : vx(S.vx.data()), vy(S.vy.data()), omega(S.omega.data()), dTheta(S.dTheta.data()), J(S.J.data()) { }
+	};
+	/// Returns the relative speed squared [m2/s2].
+	template <bool account> MCA_INLINE double trialOf(const View& V, const Movers& M, double dt, long c)
+	{
+		const int32_t     i = V.owner[c], j = V.other[c];
+		const Vec<double> r = { V.dx[c], V.dy[c] }, v = { M.vx[j] - M.vx[i], M.vy[j] - M.vy[i] };
+		const double      touch = max(V.pushing[c], V.pushing[V.reverse[c]]), perOldJ = perOldRatio(M.dTheta[i], M.J[i]);
+		const Pair<double> old { V.s[c] * perOldJ, V.tau[c] * perOldJ };
+		const Pair<double> all = trialStress(old, strainIncrement(r, v * dt, pairSpin(M.omega[i], M.omega[j], V.arm[c], dt)), pairDilation(M.dTheta[i], M.dTheta[j]), V.twoG[c]);
+		const Pair<double> now { touch > 0. ? all.normal : 0., touch > 0. ? all.shear : 0. };
+		V.touch[c] = touch, V.along[c] = dot(r, v);
+		V.b[c] = old.normal, V.c[c] = old.shear; // for the account
+		V.s[c] = now.normal, V.tau[c] = now.shear;
+		V.a[c] = square(now);
+		if (account) V.press[c] = product(old, now); // place for the sums; the pressure comes later
+		return dot(v, v);
+	}
 	template <bool account> double trial(const Store& S, Contacts& C, double dt)
 	{
-		const long    n = long(C.size());
-		const View    V(C);
-		const double *velX = S.vx.data(), *velY = S.vy.data(), *omega = S.omega.data(), *dTheta = S.dTheta.data(), *J = S.J.data();
-		double        speed2 = 0;
-#pragma omp parallel for simd schedule(static) reduction(max : speed2) if (n >= parallelFrom)
-		for (long c = 0; c < n; c++) {
-			const int32_t     i = V.owner[c], j = V.other[c];
-			const Vec<double> r = { V.dx[c], V.dy[c] }, v = { velX[j] - velX[i], velY[j] - velY[i] };
-			const double      q = V.arm[c], spin = fma(omega[i], q, omega[j] * (1. - q)) * dt, touch = max(V.pushing[c], V.pushing[V.reverse[c]]);
-			const double      perOldJ = perOldRatio(dTheta[i], J[i]);
-			const Pair<double> old { V.s[c] * perOldJ, V.tau[c] * perOldJ }, all = trialStress(old, strainIncrement(r, v * dt, spin), pairDilation(dTheta[i], dTheta[j]), V.twoG[c]);
-			const Pair<double> now { touch > 0. ? all.normal : 0., touch > 0. ? all.shear : 0. };
-			V.touch[c] = touch, V.along[c] = dot(r, v);
-			V.b[c] = old.normal, V.c[c] = old.shear; // for the account
-			V.s[c] = now.normal, V.tau[c] = now.shear;
-			V.a[c] = square(now);
-			if (account) V.press[c] = product(old, now); // place for the sums; the pressure comes later
-			speed2 = max(speed2, dot(v, v));
-		}
+		const long   n = long(C.size());
+		const View   V(C);
+		const Movers M(S);
+		double       speed2 = 0;
+#pragma omp parallel for simd schedule(static) reduction(max : speed2) firstprivate(V) if (n >= parallelFrom)
+		for (long c = 0; c < n; c++)
+			speed2 = max(speed2, trialOf<account>(V, M, dt, c));
 		return speed2;
 	}
 
+	template <bool account> MCA_INLINE void frictionOf(const View& V, const double* J, const double* dTheta, const double* scale, long c)
+	{
+		const int32_t      i = V.owner[c];
+		const ContactSide  side { { V.b[c], V.c[c] }, { V.s[c], V.tau[c] }, V.press[c], V.r2[c], V.d[c], V.friction[c], J[i], scale[i], V.touch[c] > 0. };
+		const Pair<double> after = afterFriction(side);
+		V.s[c] = after.normal, V.tau[c] = after.shear;
+		if (account) {
+			const ContactWork w = contactWork(side, after, V.perTwoG[c], V.perOwnG[c], dTheta[i], dTheta[V.other[c]]);
+			V.a[c] = w.friction, V.b[c] = w.coupling, V.c[c] = w.plastic;
+		}
+	}
 	template <bool account> void friction(const Store& S, Contacts& C, const double* scale)
 	{
 		const long    n = long(C.size());
 		const View    V(C);
 		const double *J = S.J.data(), *dTheta = S.dTheta.data();
-#pragma omp parallel for simd schedule(static) if (n >= parallelFrom)
-		for (long c = 0; c < n; c++) {
-			const int32_t      i = V.owner[c];
-			const ContactSide  side { { V.b[c], V.c[c] }, { V.s[c], V.tau[c] }, V.press[c], V.r2[c], V.d[c], V.friction[c], J[i], scale[i], V.touch[c] > 0. };
-			const Pair<double> after = afterFriction(side);
-			V.s[c] = after.normal, V.tau[c] = after.shear;
-			if (account) {
-				const ContactWork w = contactWork(side, after, V.perTwoG[c], V.perOwnG[c], dTheta[i], dTheta[V.other[c]]);
-				V.a[c] = w.friction, V.b[c] = w.coupling, V.c[c] = w.plastic;
-			}
-		}
+#pragma omp parallel for simd schedule(static) firstprivate(V) if (n >= parallelFrom)
+		for (long c = 0; c < n; c++)
+			frictionOf<account>(V, J, dTheta, scale, c);
 	}
 
 	template <VolumeRule rule> void pressure(const double* h, Contacts& C)
 	{
 		const long n = long(C.size());
 		const View V(C);
-#pragma omp parallel for simd schedule(static) if (n >= parallelFrom)
+#pragma omp parallel for simd schedule(static) firstprivate(V) if (n >= parallelFrom)
 		for (long c = 0; c < n; c++) {
 			const int32_t r   = V.reverse[c];
 			const double  inv = 1. / V.r2[c], mine = h[V.owner[c]] * pressureShape<rule>(V.rest[c], inv), theirs = h[V.other[c]] * pressureShape<rule>(V.rest[r], inv);
@@ -110,22 +128,26 @@ namespace {
 		}
 	}
 
+	/// t: torque, and for the account the shares of pressure and viscosity, n numbers each.
+	template <bool account> MCA_INLINE void forceOf(const View& V, double* t, long n, long c)
+	{
+		const int32_t      r   = V.reverse[c];
+		const Vec<double>  x   = { V.dx[c], V.dy[c] };
+		const double       d = V.d[c], inv = 1. / V.r2[c], on = V.touch[c], area = pairArea(1., d);
+		const Pair<double> both { on * (area * (V.s[c] + V.s[r])), on * (area * (V.tau[c] + V.tau[r])) };
+		const double       q  = on * viscousCoefficient(V.along[c], inv, V.viscLinear[c], V.viscQuadratic[c], Lattice::width(d)), pr = on * V.press[c];
+		const Vec<double>  f  = contactForce(x, both, inv, q, pr);
+		V.a[c] = f.x, V.b[c] = f.y;
+		t[c]   = V.arm[c] * both.shear;
+		if (account) t[n + c] = -pr * x.x, t[2 * n + c] = -pr * x.y, t[3 * n + c] = q * x.x, t[4 * n + c] = q * x.y;
+	}
 	template <bool account> void forces(Contacts& C, double* t)
 	{
 		const long n = long(C.size());
 		const View V(C);
-#pragma omp parallel for simd schedule(static) if (n >= parallelFrom)
-		for (long c = 0; c < n; c++) {
-			const int32_t      r   = V.reverse[c];
-			const Vec<double>  x   = { V.dx[c], V.dy[c] };
-			const double       d = V.d[c], inv = 1. / V.r2[c], on = V.touch[c], area = pairArea(1., d);
-			const Pair<double> both { area * (V.s[c] + V.s[r]), area * (V.tau[c] + V.tau[r]) };
-			const double       q  = on * viscousCoefficient(V.along[c], inv, V.viscLinear[c], V.viscQuadratic[c], Lattice::width(d)), pr = on * V.press[c];
-			const Vec<double>  f  = contactForce(x, fma(on * both.normal, inv, q - pr), on * both.shear * inv);
-			V.a[c] = f.x, V.b[c] = f.y;
-			t[c]   = on * V.arm[c] * both.shear;
-			if (account) t[n + c] = -pr * x.x, t[2 * n + c] = -pr * x.y, t[3 * n + c] = q * x.x, t[4 * n + c] = q * x.y;
-		}
+#pragma omp parallel for simd schedule(static) firstprivate(V) if (n >= parallelFrom)
+		for (long c = 0; c < n; c++)
+			forceOf<account>(V, t, n, c);
 	}
 }
 

@@ -9,7 +9,7 @@ namespace {
 	MCA_INLINE void reverseSlots(const int32_t* j, int k, int32_t* to)
 	{
 		for (int l = 0; l < lanes; l++)
-			to[l] = j[l] + (j[l] / blockSize) * ((nLinks - 1) * blockSize) + Lattice::opposite(k) * blockSize;
+			to[l] = j[l] + int32_t(uint32_t(j[l]) / blockSize) * ((nLinks - 1) * blockSize) + Lattice::opposite(k) * blockSize;
 	}
 	/// Per lane: (12) with the coefficients of the pair.
 	MCA_INLINE v8 viscosityMixed(const BlockView& V, const Store& S, const int32_t* j, v8 along, v8 invR2, v8 dij, v8 w)
@@ -23,7 +23,7 @@ namespace {
 	}
 	template <VolumeRule rule, bool intact, bool mixed, bool viscous, bool account> void run(const BlockView& V, const Store& S, const Extra& E)
 	{
-		const double *      H = V.h - V.base, *s = V.s - V.base * nLinks, *tau = V.tau - V.base * nLinks, d = V.d;
+		const double *      H = S.h.data(), *s = S.s.data(), *tau = S.tau.data(), d = V.d; // of all
 		const PairViscosity own = viscosityOf(V.material);
 		int32_t             self[blockSize];
 		for (int l = 0; l < blockSize; l++)
@@ -41,9 +41,10 @@ namespace {
 				int32_t        back[lanes];
 				reverseSlots(j, k, back);
 				const Motion other = gatherMotion(V.node, j);
-				Pair<v8>     theirs;
+				v8           normal {}, shear {};
 				for (int l = 0; l < lanes; l++)
-					theirs.normal[l] = s[back[l]], theirs.shear[l] = tau[back[l]];
+					normal[l] = s[back[l]], shear[l] = tau[back[l]];
+				const Pair<v8> theirs { normal, shear };
 				const Vec<v8> r   = other.position - x;
 				v8            dij = splat(d);
 				if (mixed)

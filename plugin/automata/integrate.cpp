@@ -9,7 +9,7 @@ namespace {
 	constexpr double largestForce = 1e300; // below it: finite, and no NaN
 	/// Velocities of a block after the kick.
 	struct Kicked {
-		double vx[blockSize], vy[blockSize], omega[blockSize];
+		alignas(64) double vx[blockSize], vy[blockSize], omega[blockSize];
 	};
 	/// Forces from outside on automaton i.
 	struct Outside {
@@ -18,32 +18,36 @@ namespace {
 	Outside outside(const Store& S, size_t i) { return S.ex.empty() ? Outside { 0., 0., 0. } : Outside { S.ex[i], S.ey[i], S.et[i] }; }
 	bool    finite(double x, double y, double torque) { return std::fabs(x) + std::fabs(y) + std::fabs(torque) < largestForce; }
 
+	/// One direction of the kick. force, outside (may be null), damping (may be null: none): of the lanes; inverse: 1/mass or 0.
+	MCA_INLINE void kickLanes(const double* v, const double* force, const double* outside, const double* damping, const double* inverse, double kick, double* to)
+	{
+#pragma omp simd
+		for (int l = 0; l < blockSize; l++) {
+			const double F = outside ? force[l] + outside[l] : force[l], free = fma(inverse[l] * F, kick, v[l]);
+			// implicit in the mean velocity: stable for any coefficient
+			const double b = damping ? 0.5 * damping[l] * inverse[l] * kick : 0.;
+			to[l]          = damping ? (free - b * v[l]) / (1. + b) : free;
+		}
+	}
 	void kickBlock(const Store& S, size_t base, double kick, Kicked& to)
 	{
-		const bool ext = !S.ex.empty(), damp = !S.dampX.empty();
-		for (int l = 0; l < blockSize; l++) {
-			const size_t i  = base + l;
-			double       Fx = S.fx[i], Fy = S.fy[i], T = S.torque[i];
-			if (ext) Fx += S.ex[i], Fy += S.ey[i], T += S.et[i];
-			double vx = fma(S.ax[i] * Fx, kick, S.vx[i]), vy = fma(S.ay[i] * Fy, kick, S.vy[i]);
-			if (damp) { // implicit in the mean velocity: stable for any b
-				const double bx = 0.5 * S.dampX[i] * S.ax[i] * kick, by = 0.5 * S.dampY[i] * S.ay[i] * kick;
-				vx = (vx - bx * S.vx[i]) / (1. + bx), vy = (vy - by * S.vy[i]) / (1. + by);
-			}
-			to.vx[l] = vx, to.vy[l] = vy, to.omega[l] = fma(S.ar[i] * T, kick, S.omega[i]);
-		}
+		const auto given = [&](const std::vector<double>& v) { return v.empty() ? nullptr : v.data() + base; };
+		kickLanes(&S.vx[base], &S.fx[base], given(S.ex), given(S.dampX), &S.ax[base], kick, to.vx);
+		kickLanes(&S.vy[base], &S.fy[base], given(S.ey), given(S.dampY), &S.ay[base], kick, to.vy);
+		kickLanes(&S.omega[base], &S.torque[base], given(S.et), nullptr, &S.ar[base], kick, to.omega);
 	}
 	/// New velocities, and positions by them; returns whether anything moves.
 	bool driftBlock(Store& S, size_t base, double dt, const Kicked& to)
 	{
-		double moving = 0;
+		double *vx = &S.vx[base], *vy = &S.vy[base], *omega = &S.omega[base], *x = &S.x[base], *y = &S.y[base], *angle = &S.angle[base];
+		double  moving = 0;
+#pragma omp simd reduction(max : moving)
 		for (int l = 0; l < blockSize; l++) {
-			const size_t i = base + l;
-			S.vx[i] = to.vx[l], S.vy[i] = to.vy[l], S.omega[i] = to.omega[l];
-			S.x[i]     = fma(to.vx[l], dt, S.x[i]);
-			S.y[i]     = fma(to.vy[l], dt, S.y[i]);
-			S.angle[i] = fma(to.omega[l], dt, S.angle[i]);
-			moving     = max(moving, std::fabs(to.vx[l]) + std::fabs(to.vy[l]) + std::fabs(to.omega[l]));
+			vx[l] = to.vx[l], vy[l] = to.vy[l], omega[l] = to.omega[l];
+			x[l]     = fma(to.vx[l], dt, x[l]);
+			y[l]     = fma(to.vy[l], dt, y[l]);
+			angle[l] = fma(to.omega[l], dt, angle[l]);
+			moving   = max(moving, std::fabs(to.vx[l]) + std::fabs(to.vy[l]) + std::fabs(to.omega[l]));
 		}
 		return moving > 0;
 	}

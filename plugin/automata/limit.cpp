@@ -34,7 +34,8 @@ size_t Solver::stiffestAutomaton() const
 		for (int l = 0; l < S.blocks[b].count; l++) {
 			const size_t    i = b * blockSize + l;
 			const Material& m = S.materialOf(S.blocks[b]);
-			const double    k = dispatch(m.eos.kind, [&](auto law) { return stiffness(VolumeConstants<law.value>(m, S.diameter[i]), S.J[i]); }) / sqr(S.diameter[i]);
+			const double    k = dispatch(m.eos.kind, [&](auto law) { return stiffness(VolumeConstants<law.value>(m, S.diameter[i]), S.J[i]); })
+				/ sqr(S.diameter[i]);
 			if (k > most) most = k, who = i;
 		}
 	return who;

@@ -160,7 +160,7 @@ private:
 	void  volumes(const Extra&);
 	void  stresses(const Extra&);
 	void  forces(const Extra&);
-	void  heats();
+	void  viscousHeats();
 	void  bookPasses();
 	void  limitStep();
 	void  checkResults(double nearestContact, size_t closest);

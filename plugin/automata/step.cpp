@@ -127,7 +127,7 @@ void Solver::forces(const Extra& X)
 }
 
 /// Where materials have an internal energy, the heat of the pair viscosity of the last step goes into it.
-void Solver::heats()
+void Solver::viscousHeats()
 {
 	if (store.heat.empty() || !(lastMove > 0)) return;
 	eachAwake([&](size_t b) {
@@ -154,7 +154,7 @@ void Solver::computeForces()
 	volumes(X);
 	stresses(X);
 	forces(X);
-	heats();
+	viscousHeats();
 	bookPasses();
 	limitStep();
 }

@@ -37,7 +37,7 @@ namespace {
 				if (mixed) // (8) with unlike arms; series rule for the stiffness
 					for (int l = 0; l < lanes; l++) {
 						const double q = arm(d, V.diameterOfAll[j[l]]);
-						spin[l]        = fma(w[l], q, wj[l] * (1. - q)) * dt;
+						spin[l]        = pairSpin(w[l], wj[l], q, dt);
 						stiff[l]       = S.pairTwoG(V.block.species, j[l], q);
 					}
 				const m8 on   = holding(bits, k);
@@ -84,7 +84,7 @@ namespace {
 #pragma omp simd reduction(max : most, hottest)
 		for (int l = 0; l < blockSize; l++) {
 			to.szz[l]   = trialSzz(twoG, V.dTheta[l], V.szz[l]);
-			to.trial[l] = std::sqrt(equivalentStress2(sums.square[l] * V.invN[l], to.szz[l]));
+			to.trial[l] = equivalentStress(sums.square[l] * V.invN[l], to.szz[l]);
 			most        = max(most, to.trial[l]);
 			if (LawOf<kind>::heats) hottest = max(hottest, V.temperature[l]);
 		}

@@ -16,11 +16,11 @@ namespace {
 			V.record[nodeSize * l + 5] = V.dTheta[l];
 	}
 
-	template <VolumeRule rule, bool intact, bool mixed, EosKind law> void sumRule(const BlockView& V, const double* contactSum, bool init, BlockResult& out)
+	template <VolumeRule rule, bool intact, bool mixed, EosKind law> void sumRule(const BlockView& V, const Store& S, const double* contactSum, bool init, BlockResult& out)
 	{
+		constexpr bool        hot = LawOf<law>::heats;
 		const VolumeConstants<law> c(V.material, V.d);
-		constexpr bool hot = LawOf<law>::heats;
-		const double *        X = V.x - V.base, *Y = V.y - V.base, *D = V.diameterOfAll, d = V.d;
+		const double *        X = S.x.data(), *Y = S.y.data(), *D = V.diameterOfAll, d = V.d;
 		const int32_t *       nb = V.neighbour, *flags = V.flags;
 		alignas(64) double    sums[blockSize];
 		double                nearest = 1e300;
@@ -98,8 +98,8 @@ namespace {
 	}
 	template <bool intact, EosKind law> void affineRule(const BlockView& V, const double* contactSum, bool init, BlockResult& out)
 	{
+		constexpr bool        hot = LawOf<law>::heats;
 		const VolumeConstants<law> c(V.material, V.d);
-		constexpr bool hot = LawOf<law>::heats;
 		LinkSums              L;
 		sumLinks<intact>(V, L);
 		if (init)
@@ -116,7 +116,7 @@ namespace {
 			const double            J = affineRatio(c, F, V.factor[l], V.rest[l], contactSum ? contactSum[l] : 0.), Jo = init ? J : V.J[l];
 			const PressureState     p = pressureStep(c, J, Jo, { V.P[l], hot ? V.heat[l] : 0. }, V.factor[l] > 0.);
 			const Tensor<double>    t = affinePush(c, F, V.factor[l], p.P, V.cell[l]);
-			stiffest = max(stiffest, affineStiffness(c, J, F, e, V.factor[l], L.nearest2[l]));
+			stiffest                  = max(stiffest, affineStiffness(c, J, F, e, V.factor[l], L.nearest2[l]));
 			V.dTheta[l] = dilation(J, Jo), V.J[l] = J, V.P[l] = p.P;
 			if (hot) V.heat[l] = p.e;
 			L.xx[l] = t.xx, L.xy[l] = t.xy, L.yx[l] = t.yx, L.yy[l] = t.yy;
@@ -147,14 +147,10 @@ void volumePass(Store& S, size_t b, VolumeRule rule, const Extra& X, bool init, 
 	const BlockView V(S, b);
 	const double*   contactSum = V.block.contact && X.contactSum ? X.contactSum + V.base : nullptr;
 	dispatch(V.material.eos.kind, [&](auto law) {
-		choices(
-		        [&](auto intact, auto mixed) {
-			        dispatch(rule, [&](auto r) {
-				        if constexpr (r.value == VolumeRule::affine) affineRule<intact.value, law.value>(V, contactSum, init, out);
-				        else sumRule<r.value, intact.value, mixed.value, law.value>(V, contactSum, init, out);
-			        });
-		        },
-		        V.block.intact, V.block.mixed);
+		dispatch(rule, [&](auto r) {
+			if constexpr (r.value == VolumeRule::affine) choices([&](auto intact) { affineRule<intact.value, law.value>(V, contactSum, init, out); }, V.block.intact);
+			else choices([&](auto intact, auto mixed) { sumRule<r.value, intact.value, mixed.value, law.value>(V, S, contactSum, init, out); }, V.block.intact, V.block.mixed);
+		});
 	});
 	publishDilation(V);
 }

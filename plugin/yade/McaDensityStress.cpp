@@ -94,7 +94,7 @@ void McaDensity::stress(Row& r)
 	const auto           old   = [&](const Side& s) { return Pair<Real> { s.p->s[s.side] * perOldJ, s.p->tau[s.side] * perOldJ }; };
 	const auto           trial = [&](const Side& s, Pair<Real> before) { // this side's stresses before yield
 		const Row& o  = rows[size_t(s.other)];
-		const Real q  = mca::arm(r.d, o.d), on = r.fresh || o.fresh ? 0. : dt, spin = mca::fma(r.motion[2], q, o.motion[2] * (1. - q)) * on;
+		const Real q  = mca::arm(r.d, o.d), on = r.fresh || o.fresh ? 0. : dt, spin = mca::pairSpin(r.motion[2], o.motion[2], q, on);
 		const auto e  = mca::strainIncrement(vectorTo(*r.state, *o.state), Vec<Real> { (o.motion[0] - r.motion[0]) * on, (o.motion[1] - r.motion[1]) * on }, spin);
 		const auto now = mca::trialStress(before, e, mca::pairDilation(l.dTheta, o.l->dTheta), s.p->twoG);
 		s.p->s[s.side] = now.normal, s.p->tau[s.side] = now.shear;
@@ -121,7 +121,7 @@ void McaDensity::stress(Row& r)
 	}
 	sums.square += ofContacts, sums.both += bothOfContacts;
 
-	const Real  before = m.stressZZ, szzTrial = mca::trialSzz(2. * material.G, l.dTheta, before), sigma = std::sqrt(mca::equivalentStress2(sums.square * l.invN, szzTrial));
+	const Real  before = m.stressZZ, szzTrial = mca::trialSzz(2. * material.G, l.dTheta, before), sigma = mca::equivalentStress(sums.square * l.invN, szzTrial);
 	mca::Return back { 1., 0. };
 	mca::dispatch(material.yield.kind, [&](auto kind) { back = mca::radialReturn<kind.value>(material.yield, sigma, m.plasticStrain, m.temperature, threeG, dt); });
 	m.stressZZ = szzTrial * back.scale;

@@ -149,7 +149,7 @@ private:
 	void                   checkScene(Scene*) const;
 	void                   readExternal(Scene*);
 	void                   checkStep(Scene*) const;
-	template <class F> auto read(F&& f);
+	template <class F> auto read(const char* call, F&& f);
 	vector<size_t>         places() const; ///< of order in the solver's arrays
 };
 REGISTER_SERIALIZABLE(McaEngine);

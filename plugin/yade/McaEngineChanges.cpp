@@ -35,6 +35,7 @@ namespace {
 	}
 	template <class T> void soon(const T& what) { __builtin_prefetch(&what); }
 	constexpr size_t ahead = 6; ///< bodies whose memory is asked for before it is needed
+	void             soon(const McaState& s) { soon(s.se3), soon(s.vel), soon(s.angVel), soon(s.inertia[2]), soon(s.blockedDOFs), soon(s.temperature), soon(s.brokenLinks); }
 } // namespace
 
 /// Its bits are those that body and engine had when they were last the same. Most bodies are, so nothing else is looked at then.
@@ -88,9 +89,7 @@ vector<McaEngine::Change> McaEngine::changes(bool& rebuild)
 	vector<Change> list;
 	for (size_t q = 0; q < order.size(); q++) {
 		if (const size_t p = q + ahead; p < order.size() && bodies[p] && same[p].state && same[p].shape) {
-			const auto& s = static_cast<const McaState&>(*same[p].state);
-			soon(bodies[p]->groupMask), soon(bodies[p]->shape), soon(s.se3), soon(s.vel), soon(s.angVel), soon(s.inertia[2]), soon(s.blockedDOFs), soon(s.temperature), soon(s.brokenLinks);
-			soon(static_cast<const Sphere&>(*same[p].shape).radius);
+			soon(bodies[p]->groupMask), soon(bodies[p]->shape), soon(static_cast<const McaState&>(*same[p].state)), soon(static_cast<const Sphere&>(*same[p].shape).radius);
 		}
 		if (!bodies[q] || untouched(q)) continue;
 		const Change c = changeOf(q, rebuild);
@@ -201,7 +200,8 @@ bool McaEngine::writeBody(State& s, Same& was, size_t i) const
 {
 	const Store& S    = solver->store;
 	auto*        m    = castTo<McaState>(&s);
-	bool         kept = s.se3.position == was.pos && s.vel == was.vel && s.angVel == was.angVel && (s.se3.orientation.coeffs() - was.ori.coeffs()).norm() < 1e-12;
+	bool         kept = s.se3.position == was.pos && s.vel == was.vel && s.angVel == was.angVel;
+	kept &= unlike(s.se3.orientation.coeffs(), was.ori.coeffs()) == 0 || (s.se3.orientation.coeffs() - was.ori.coeffs()).norm() < 1e-12;
 	if (m) kept &= !differs(m->plasticStrain, was.plasticStrain) && !differs(m->temperature, was.temperature);
 	was.pos = Vector3r(S.x[i], S.y[i], s.se3.position[2]), was.vel = Vector3r(S.vx[i], S.vy[i], 0);
 	if (S.angle[i] != was.angle) was.angle = S.angle[i], was.ori = Quaternionr(AngleAxisr(was.angle, Vector3r::UnitZ()));
@@ -222,6 +222,7 @@ void McaEngine::writeBodies(Scene* scene)
 	const Store& S      = solver->store;
 	Real         lowest = 0;
 	for (size_t q = 0; q < order.size(); q++) {
+		if (const size_t p = q + ahead; p < order.size() && same[p].state) soon(static_cast<const McaState&>(*same[p].state));
 		const auto&  b = bodies[q];
 		const size_t i = size_t(solver->indexOf(order[q]));
 		if (!b || !b->state) continue; // erased since loading; told by the next step

@@ -89,18 +89,18 @@ void McaEngine::refresh(Scene* scene)
 	if (!solver || (looked && standsIn(*scene))) ensureBuilt(scene);
 }
 
-/// f() of the present state, under the lock; the bodies are gathered if that has not been done.
-template <class F> auto McaEngine::read(F&& f)
+/// f() of the present state, under the lock; the bodies are gathered if that has not been done. An engine of a scene that is gone would show numbers that no body has.
+template <class F> auto McaEngine::read(const char* call, F&& f)
 {
 	return locked([&] {
-		refresh(Omega::instance().getScene().get());
+		refresh(myScene(call).get());
 		return f();
 	});
 }
 
 py::object McaEngine::identifiers()
 {
-	const vector<int> now = read([&] { return order; });
+	const vector<int> now = read("ids", [&] { return order; });
 	return sdk::arrayCopy(now.data(), { Py_ssize_t(now.size()) });
 }
 
@@ -147,7 +147,7 @@ vector<size_t> McaEngine::places() const
 
 py::object McaEngine::fieldByName(const string& name)
 {
-	const auto out = read([&] { return quantity(*solver, places(), name, "field: name"); });
+	const auto out = read("field", [&] { return quantity(*solver, places(), name, "field: name"); });
 	return sdk::arrayCopy(out.data(), { Py_ssize_t(out.size()) });
 }
 
@@ -163,7 +163,7 @@ py::dict McaEngine::fieldsByName(py::object names)
 	}
 	vector<int>          ids;
 	vector<vector<Real>> values;
-	read([&] {
+	read("fields", [&] {
 		const auto at = places();
 		ids           = order;
 		for (const auto& name : asked)
@@ -177,7 +177,7 @@ py::dict McaEngine::fieldsByName(py::object names)
 
 py::dict McaEngine::energies()
 {
-	const auto a = read([&] { return solver->account(); });
+	const auto a = read("energies", [&] { return solver->account(); });
 	py::dict   d;
 	d["kinetic"] = a.kinetic, d["volumetric"] = a.volumetric, d["deviatoric"] = a.deviatoric, d["plastic"] = a.plastic, d["viscous"] = a.viscous, d["friction"] = a.friction;
 	d["fracture"] = a.fracture, d["coupling"] = a.coupling, d["boundary"] = a.boundary, d["left"] = a.left, d["external"] = a.external, d["halfStep"] = a.centre, d["total"] = a.total(), d["bookedError"] = a.bookedError();
@@ -220,7 +220,7 @@ py::dict McaEngine::phases()
 
 py::list McaEngine::linkList()
 {
-	const auto pairs = read([&] { return solver->links(); });
+	const auto pairs = read("links", [&] { return solver->links(); });
 	py::list   l;
 	for (auto& p : pairs)
 		l.append(py::make_tuple(p.first, p.second));
@@ -234,7 +234,7 @@ long McaEngine::automataCount() const
 
 Vector2r McaEngine::momentum()
 {
-	const auto a = read([&] { return solver->account(); });
+	const auto a = read("momentum", [&] { return solver->account(); });
 	return Vector2r(a.px, a.py);
 }
 

@@ -87,10 +87,10 @@ void McaDensity::addForces(Scene* scene)
 		}
 	for (long i = 0; i < n; i++) {
 		const Sum& s = sums[size_t(i)];
-		if (std::fabs(s.force[0]) + std::fabs(s.force[1]) + std::fabs(s.force[2]) + std::fabs(s.torque) < 1e300) continue;
+		if (std::fabs(s.force[0]) + std::fabs(s.force[1]) + std::fabs(s.force[2]) + std::fabs(s.torque) < 1e100) continue;
 		std::ostringstream o;
 		o << "body " << i << ": force (" << s.force[0] << ", " << s.force[1] << ") N/m in step " << steps
-		  << " is not finite. Positions are those before the step; save and look, or use a smaller time step. Check positions and velocities that a script has set.";
+		  << " is not finite, or beyond 1e100. Positions are those before the step; save and look, or use a smaller time step. Check positions, velocities, and kn and ks of contacts with walls, that a script has set.";
 		throw mca::Error(o.str());
 	}
 	for (long i = 0; i < n; i++) {

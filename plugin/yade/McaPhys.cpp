@@ -188,7 +188,7 @@ bool Law2_ScGeom_McaPhys_Mca::go(shared_ptr<IGeom>& geom, shared_ptr<IPhys>& phy
                 const auto shape = [&](Real d) { return mca::pressureShape<mca::ofContacts(rule.value)>(d, inv); };
                 if (!p.linked) {
                         const Real press = (p.pushes(0, r2) ? a.share * shape(p.rest[0]) : 0.) + (p.pushes(1, r2) ? b.share * shape(p.rest[1]) : 0.);
-                        return mca::contactForce(r, mca::fma(both.normal, inv, q - press), both.shear * inv);
+                        return mca::contactForce(r, both, inv, q, press);
                 }
                 mca::Vec<Real> push; // of the pressures, to the first body its negative
                 if (rule.value == VolumeRule::affine) push = times(mca::Tensor<Real> { a.txx + b.txx, a.txy + b.txy, a.tyx + b.tyx, a.tyy + b.tyy }, p.slot);

@@ -80,6 +80,33 @@ def test_kernelsHaveValuesInValuesOut(folder):
 	assert not wrong, wrong
 
 
+#: functions that a formula of the law would need -> where else they may stand, with the reason
+ELSEWHERE = {
+        'yade/McaBodies.cpp': 'scattered strengths',
+        'yade/McaDensity.cpp': 'distances in messages and checks',
+        'yade/McaDensityFracture.cpp': 'a distance',
+        'yade/McaDensity.hpp': 'a distance',
+        'yade/McaPhys.cpp': 'unit normal for YADE',
+        'automata/build.cpp': 'distances of the packing',
+        'automata/fracture.cpp': 'a distance',
+        'automata/step.cpp': 'distances in messages and checks',
+        'automata/integrate.cpp': 'leapfrog', 'automata/force_pass.cpp': 'sums over links',
+}
+
+
+@pytest.mark.parametrize('folder', ['yade', 'automata'])
+def test_theLawStandsInKernels(folder):
+	"""No roots, powers, fused products of material constants, and none of the law's own numbers, outside kernels: loops load, call and store."""
+	wrong = []
+	for p in sources(folder):
+		text = re.sub(r'//.*', '', re.sub(r'"(\\.|[^"])*"', '""', p.read_text()))
+		name = '%s/%s' % (folder, p.name)
+		pattern = r'\bstoredEnergy\s*\(|\bviscosity\.(linear|quadratic)\s*\*|1\. / 6\.|\b1\.5 \* (?!s\.dt)|0\.866|0\.577|% 6\b|\(k \+ 3\)'
+		if name not in ELSEWHERE: pattern += r'|\b(std::)?(sqrt|pow|exp|log|fma)\s*\('
+		wrong += ['%s: %s' % (name, m[0]) for m in re.finditer(pattern, text)]
+	assert not wrong, wrong
+
+
 def test_eachSourceNamesItsLicence():
 	root = PLUGIN.parent
 	files = [p for d in ('plugin', 'pyscripts', 'tests') for p in (root / d).rglob('*') if p.suffix in ('.hpp', '.cpp', '.py', '.cmake') or p.name == 'CMakeLists.txt']

@@ -21,7 +21,7 @@ from damage_scenes import FORMATS, SCENES
 
 def process(*words):
 	r = subprocess.run(['/usr/bin/python3', *map(str, words)], capture_output=True, text=True, env=dict(os.environ, MPLBACKEND='Agg', OMP_NUM_THREADS='1'))
-	assert r.returncode == 0, r.stdout[-2000:] + r.stderr[-4000:]
+	assert r.returncode == 0, 'status %d: %s' % (r.returncode, r.stdout[-2000:] + r.stderr[-4000:])
 	return r.stdout
 
 

@@ -58,6 +58,20 @@ def test_syncAfterResetIsRefused(plugin):
 	process("O.reset()\nassert refused(e.sync)\nids = block()\nbefore = x(ids)\nrefused(e.sync)\nassert (x(ids) == before).all()")
 
 
+@pytest.mark.parametrize('end', ['O.reset()', 'O.load(name)', 'O.loadTmp()', 'O.switchToScene(O.addScene())'])
+def test_anOldHandleShowsNoNumbers(plugin, end):
+	"""They would be those of a scene that is gone, and look like those of the present one."""
+	process("""
+import tempfile
+name = tempfile.mkdtemp() + '/a.yade'
+O.save(name)
+O.saveTmp()
+%s
+for call in "e.field('x')", "e.fields(['x'])", 'e.energies()', 'e.links()', 'e.momentum', 'e.ids':
+	assert refused(lambda: eval(call)), call
+""" % end)
+
+
 def test_pictureAfterReset(plugin):
 	process("""
 from yade_mca import viewer

@@ -24,6 +24,8 @@ template <class T> MCA_INLINE Pair<T> strainIncrement(Vec<T> r, Vec<T> u, T spin
 }
 /// Linear strain that goes with a dilation, mean of two automata: a third of half their sum.
 constexpr double linearShare = 1. / 6.;
+/// Turn of a pair in a step by the spins of both [-]: arm of the first over the distance.
+MCA_INLINE double pairSpin(double omega, double other, double arm, double dt) { return fma(omega, arm, other * (1. - arm)) * dt; }
 /// Mean linear strain that a pair takes for its two automata; own, other: dilation() [-].
 template <class T> MCA_INLINE T pairDilation(T own, T other) { return (own + other) * linearShare; }
 /// 1/J of the step before, from J now and its dilation().
@@ -58,6 +60,7 @@ template <class T> struct PairSums {
 MCA_INLINE double trialSzz(double twoG, double dilation, double before) { return fma(-twoG * (1. / 3.), dilation, before); }
 /// Equivalent stress squared [Pa2] (10): meanSquare = mean over the slots of s^2 + tau^2; szz = out-of-plane deviator.
 MCA_INLINE double equivalentStress2(double meanSquare, double szz) { return fma(3., meanSquare, 1.5 * szz * szz); }
+MCA_INLINE double equivalentStress(double meanSquare, double szz) { return std::sqrt(equivalentStress2(meanSquare, szz)); }
 /// The same with the pair stresses scaled by the radial return, szz after it.
 MCA_INLINE double equivalentStressAfter(double scale, double meanSquare, double szz) { return std::sqrt(fma(3. * scale * scale, meanSquare, 1.5 * szz * szz)); }
 
@@ -74,7 +77,7 @@ struct PairWork {
 /// sums: of links (and of contacts in `both` and `square`); szz before, trial and after; sixth = cell of the full packing / neighbours; invN = 1/slots.
 MCA_INLINE PairWork pairWork(const PairSums<double>& sums, double trial, const Return& r, double J, double dilation, double szzBefore, double szzTrial, double szz, double threeG, double sixth, double invN)
 {
-	const double before = std::sqrt(equivalentStress2(sums.squareBefore * invN, szzBefore));
+	const double before = equivalentStress(sums.squareBefore * invN, szzBefore);
 	// the stress before the step along the direction of flow: the two need not be parallel
 	const double both  = 3. * sums.both * invN + 1.5 * szzBefore * szzTrial;
 	const double along = trial > 0. ? both / trial : 0.;

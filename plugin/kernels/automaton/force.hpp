@@ -38,6 +38,10 @@ template <class T> MCA_INLINE Vec<T> linkForce(Vec<T> r, T along, T across, Vec<
 {
 	return { fma(along, r.x, fma(-across, r.y, -push.x)), fma(along, r.y, fma(across, r.x, -push.y)) };
 }
-/// Force of a contact; along holds its pressure and viscosity, too.
-template <class T> MCA_INLINE Vec<T> contactForce(Vec<T> r, T along, T across) { return { fma(along, r.x, -across * r.y), fma(along, r.y, across * r.x) }; }
+/// Force of a contact: stress as for links, viscous = viscousCoefficient(), pressure over r [N/m2].
+template <class T> MCA_INLINE Vec<T> contactForce(Vec<T> r, Pair<T> stress, T invR2, T viscous, T pressure)
+{
+	const T along = fma(stress.normal, invR2, viscous - pressure), across = stress.shear * invR2;
+	return { fma(along, r.x, -across * r.y), fma(along, r.y, across * r.x) };
+}
 }

@@ -68,7 +68,12 @@ template <EosKind law> struct VolumeConstants {
 	double perRho;  ///< 1/rho0 [m3/kg]
 	double clampAt; ///< volume strain at which the equation of state is clamped [-]
 	VolumeConstants(const Material& m, double d)
-	        : eos(m.eos), d2(d * d), perArea(mca::perArea(d)), G43(m.G * (4. / 3.)), perRho(1. / m.eos.rho0), clampAt(LawOf<law>::clampStrain(m.eos))
+		: eos(m.eos)
+		, d2(d * d)
+		, perArea(mca::perArea(d))
+		, G43(m.G * (4. / 3.))
+		, perRho(1. / m.eos.rho0)
+		, clampAt(LawOf<law>::clampStrain(m.eos))
 	{
 	}
 };
@@ -134,10 +139,11 @@ template <EosKind law> MCA_INLINE Tensor<double> affinePush(const VolumeConstant
 }
 /// stiffness(), and how much stiffer than in the perfect packing: the volume by the sum of (dJ/dr_k)^2, the pair law by the closest link. directions: sum
 /// of e_k (x) e_k; nearest2 = smallest r^2 [m2]. Covers edges and corners of free surfaces up to nu = 0.49, measured; beyond 4 what is torn and sheared.
-template <EosKind law> MCA_INLINE double affineStiffness(const VolumeConstants<law>& c, double J, const Tensor<double>& F, const Symmetric<double>& e, double factor, double nearest2)
+template <EosKind law>
+MCA_INLINE double affineStiffness(const VolumeConstants<law>& c, double J, const Tensor<double>& F, const Symmetric<double>& e, double factor, double nearest2)
 {
 	const double spread = e.xx * (F.yy * F.yy + F.yx * F.yx) - 2. * e.xy * (F.yy * F.xy + F.yx * F.xx) + e.yy * (F.xy * F.xy + F.xx * F.xx);
 	const double one = max(factor * factor * spread * c.perArea * (1. / nLinks), 1.), bulk = max(min(one * one, 4.), one);
-	return stiffness(c, J, bulk, max(0.5 * c.d2 / nearest2, 1.));
+	return stiffness<law>(c, J, bulk, max(0.5 * c.d2 / nearest2, 1.));
 }
 }

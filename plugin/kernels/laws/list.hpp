@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // All laws: an include and a row each, L(name, struct, what it is). The name is that of scripts. All else follows: kinds, constants, dispatch, saved states,
-// McaMat, materials.py (plugin/laws.cpp writes the table for Python), one file of row kernels per flow stress (plugin/grid/CMakeLists.txt).
+// McaMat, one file of row kernels per flow stress (plugin/grid/CMakeLists.txt).
 #pragma once
 #include "eos/linear.hpp"
 #include "eos/mieGruneisen.hpp"

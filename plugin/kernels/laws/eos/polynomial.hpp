@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Polynomial: P = K mu + A2 mu^2 + A3 mu^3 + (B0 + B1 mu) E with the compression mu = 1/J - 1 and the internal energy E per rest volume; in tension P = -K eps + B0 E.
-// Formulation, equations (4c), (4d).
+// Polynomial: P = K mu + A2 mu^2 + A3 mu^3 + (B0 + B1 mu) E with the compression mu = 1/J - 1 and the internal energy E per rest volume; in tension P = -K eps
+// + B0 E. Formulation, equations (4c), (4d).
 #pragma once
 #include "../law.hpp"
 
@@ -21,9 +21,10 @@ struct Polynomial : EosLaw {
 
 	template <class E, class Need> static void check(const E& e, Need&& need)
 	{
-		const auto slope = [&](double mu) { return e.bulkModulus() + (2. * e.quadraticModulus + 3. * e.cubicModulus * mu) * mu; };
-		const double turn = e.cubicModulus != 0 ? min(max(-e.quadraticModulus / (3. * e.cubicModulus), 0.), 1.) : 0.;
-		need(slope(1.) > 0 && slope(turn) > 0, "quadraticModulus [Pa]", e.quadraticModulus, "such that, with cubicModulus, the pressure grows up to twice the density");
+		const auto   slope = [&](double mu) { return e.bulkModulus() + (2. * e.quadraticModulus + 3. * e.cubicModulus * mu) * mu; };
+		const double turn  = e.cubicModulus != 0 ? min(max(-e.quadraticModulus / (3. * e.cubicModulus), 0.), 1.) : 0.;
+		need(slope(1.) > 0 && slope(turn) > 0, "quadraticModulus [Pa]", e.quadraticModulus,
+		     "such that, with cubicModulus, the pressure grows up to twice the density");
 	}
 
 	/// twice the rest density
@@ -49,12 +50,11 @@ struct Polynomial : EosLaw {
 	template <class E> static double storedEnergy(const E& e, double eps)
 	{
 		if (eps >= 0) return 0.5 * e.bulkModulus() * eps * eps;
-		const double at[4] = { 0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363 };
+		const double at[4]     = { 0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363 };
 		const double weight[4] = { 0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763 };
 		const double x = max(eps, clampStrain(e)), d = x - eps;
 		double       w = 0;
-		for (int k = 0; k < 4; k++)
-			w += weight[k] * (pressure(e, 0.5 * x * (1. - at[k])) + pressure(e, 0.5 * x * (1. + at[k])));
+		for (int k = 0; k < 4; k++) w += weight[k] * (pressure(e, 0.5 * x * (1. - at[k])) + pressure(e, 0.5 * x * (1. + at[k])));
 		return -0.5 * x * w + d * (pressure(e, x) + 0.5 * slope(e, 1. / (1. + x) - 1.) * d);
 	}
 
@@ -71,4 +71,4 @@ private:
 		return fma(fma(3. * e.cubicModulus, mu, 2. * e.quadraticModulus), mu, e.bulkModulus()) * sqr(1. + mu);
 	}
 };
-}
+} // namespace mca::eos

@@ -27,7 +27,8 @@ struct ZerilliArmstrong : FlowLaw {
 	/// The part that temperature and rate change, at the reference rate [Pa], and its slope.
 	template <class Y> static MCA_INLINE StaticYield thermalPart(const Y& y, double eqps, double temperature)
 	{
-		const double ep = max(eqps, 1e-4), near = min(eqps * 1e4, 1.), soft = fastExp(-y.thermalDecay * temperature); // a straight line below 1e-4, as powerHardening
+		const double ep = max(eqps, 1e-4), near = min(eqps * 1e4, 1.),
+			     soft  = fastExp(-y.thermalDecay * temperature); // a straight line below 1e-4, as powerHardening
 		const double grown = y.thermalHardening * std::sqrt(ep);
 		return { fma(grown, near, y.thermalStress) * soft, (near < 1. ? 1. : 0.5) * grown / ep * soft };
 	}
@@ -46,9 +47,10 @@ struct ZerilliArmstrong : FlowLaw {
 		return staticYield(y, eqps, temperature).stress + thermalPart(y, eqps, temperature).stress * (grows - 1.);
 	}
 
-	/// trial - 3G d = Y(eps_p + d, d/dt) by Newton steps in x = ln(d/(dt rate0)): the gap is concave in x, so from a start that is too large they come down to
-	/// the root without passing it. The start is the smaller of the answers without rate and with the rate alone. Five leave a residual below 1e-6 Y.
-	template <class Y> static MCA_INLINE double increment(const Y& y, const StaticYield& s, double trial, double threeG, double dt, double eqps, double temperature)
+	/// trial - 3G d = Y(eps_p + d, d/dt) by Newton steps in x = ln(d/(dt rate0)): the gap is concave in x, so from a start that is too large they come down
+	/// to the root without passing it. The start is the smaller of the answers without rate and with the rate alone. Five leave a residual below 1e-6 Y.
+	template <class Y>
+	static MCA_INLINE double increment(const Y& y, const StaticYield& s, double trial, double threeG, double dt, double eqps, double temperature)
 	{
 		const double d0 = dt * y.referenceRate, k = threeG + s.slope, over = max(trial - s.stress, 0.), slow = over / k;
 		const double hot = max(thermalPart(y, eqps, temperature).stress, 1e-12 * s.stress), power = max(y.rateDecay * temperature, 1e-12);
@@ -60,4 +62,4 @@ struct ZerilliArmstrong : FlowLaw {
 		return x > 0. ? d0 * fastExp(x) : slow; // slower than the reference rate
 	}
 };
-}
+} // namespace mca::flow
