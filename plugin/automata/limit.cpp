@@ -32,9 +32,10 @@ size_t Solver::stiffestAutomaton() const
 	double       most = -1;
 	for (size_t b = 0; b < S.blocks.size(); b++)
 		for (int l = 0; l < S.blocks[b].count; l++) {
-			const size_t          i = b * blockSize + l;
-			const VolumeConstants c(S.materialOf(S.blocks[b]), S.diameter[i]);
-			const double          k = dispatch(c.eos.kind, [&](auto law) { return stiffness<law.value>(c, S.J[i]); }) / c.d2;
+			const size_t    i = b * blockSize + l;
+			const Material& m = S.materialOf(S.blocks[b]);
+			const double    k = dispatch(m.eos.kind, [&](auto law) { return stiffness(VolumeConstants<law.value>(m, S.diameter[i]), S.J[i]); })
+				/ sqr(S.diameter[i]);
 			if (k > most) most = k, who = i;
 		}
 	return who;

@@ -19,7 +19,7 @@ namespace {
 	template <VolumeRule rule, bool intact, bool mixed, EosKind law> void sumRule(const BlockView& V, const Store& S, const double* contactSum, bool init, BlockResult& out)
 	{
 		constexpr bool        hot = LawOf<law>::heats;
-		const VolumeConstants c(V.material, V.d);
+		const VolumeConstants<law> c(V.material, V.d);
 		const double *        X = S.x.data(), *Y = S.y.data(), *D = V.diameterOfAll, d = V.d;
 		const int32_t *       nb = V.neighbour, *flags = V.flags;
 		alignas(64) double    sums[blockSize];
@@ -55,11 +55,11 @@ namespace {
 #pragma omp simd reduction(max : stiffest, closing, widest) reduction(+ : clampCount, badCount)
 		for (int l = 0; l < blockSize; l++) {
 			const double        J = volumeRatio<rule>((sums[l] - V.rest[l]) * V.invN[l]), Jo = init ? J : V.J[l];
-			const PressureState p = pressureStep<law>(c, J, Jo, { V.P[l], hot ? V.heat[l] : 0. }, true);
+			const PressureState p = pressureStep(c, J, Jo, { V.P[l], hot ? V.heat[l] : 0. }, true);
 			V.dTheta[l] = dilation(J, Jo), V.J[l] = J, V.P[l] = p.P;
 			if (hot) V.heat[l] = p.e;
 			V.h[l]   = pressureShare<rule>(p.P, J, V.cell[l] * V.invN[l]);
-			stiffest = max(stiffest, stiffness<law>(c, J));
+			stiffest = max(stiffest, stiffness(c, J));
 			closing  = max(closing, -V.dTheta[l]);
 			widest   = max(widest, J);
 			clampCount += J - 1. < c.clampAt ? 1 : 0;
@@ -99,7 +99,7 @@ namespace {
 	template <bool intact, EosKind law> void affineRule(const BlockView& V, const double* contactSum, bool init, BlockResult& out)
 	{
 		constexpr bool        hot = LawOf<law>::heats;
-		const VolumeConstants c(V.material, V.d);
+		const VolumeConstants<law> c(V.material, V.d);
 		LinkSums              L;
 		sumLinks<intact>(V, L);
 		if (init)
@@ -114,9 +114,9 @@ namespace {
 			const Tensor<double>    F = { L.xx[l], L.xy[l], L.yx[l], L.yy[l] };
 			const Symmetric<double> e = intact ? Symmetric<double> { Lattice::spread, 0., Lattice::spread } : Symmetric<double> { L.exx[l], L.exy[l], L.eyy[l] };
 			const double            J = affineRatio(c, F, V.factor[l], V.rest[l], contactSum ? contactSum[l] : 0.), Jo = init ? J : V.J[l];
-			const PressureState     p = pressureStep<law>(c, J, Jo, { V.P[l], hot ? V.heat[l] : 0. }, V.factor[l] > 0.);
+			const PressureState     p = pressureStep(c, J, Jo, { V.P[l], hot ? V.heat[l] : 0. }, V.factor[l] > 0.);
 			const Tensor<double>    t = affinePush(c, F, V.factor[l], p.P, V.cell[l]);
-			stiffest = max(stiffest, affineStiffness<law>(c, J, F, e, V.factor[l], L.nearest2[l]));
+			stiffest                  = max(stiffest, affineStiffness(c, J, F, e, V.factor[l], L.nearest2[l]));
 			V.dTheta[l] = dilation(J, Jo), V.J[l] = J, V.P[l] = p.P;
 			if (hot) V.heat[l] = p.e;
 			L.xx[l] = t.xx, L.xy[l] = t.xy, L.yx[l] = t.yx, L.yy[l] = t.yy;
@@ -133,7 +133,7 @@ namespace {
 			for (int l = 0; l < blockSize; l++) {
 				const double J = contactRatio(contactSum[l]);
 				V.h[l]         = pressureShare<ofContacts(VolumeRule::affine)>(pressure<law>(c.eos, J - 1.), J, V.cell[l] * (1. / nLinks));
-				stiffest       = max(stiffest, stiffness<law>(c, J));
+				stiffest       = max(stiffest, stiffness(c, J));
 				clampCount += J - 1. < c.clampAt ? 1 : 0;
 			}
 		}

@@ -3,9 +3,10 @@
 # Never -ffast-math: at link it would switch the whole process to flush denormals. -ffp-contract=off: a fused multiply-add only where written.
 find_package(OpenMP REQUIRED)
 
-set(MCA_SOLVER_FLAGS -O3 -ffp-contract=off -fno-math-errno -fno-trapping-math -fvisibility=hidden -fvisibility-inlines-hidden -Wall -Wextra -Werror=switch -Wno-psabi)
+set(MCA_OPTIMISATION "-O3" CACHE STRING "level of optimisation of the solvers")
+set(MCA_SOLVER_FLAGS ${MCA_OPTIMISATION} -ffp-contract=off -fno-math-errno -fno-trapping-math -fvisibility=hidden -fvisibility-inlines-hidden -Wall -Wextra -Werror=switch -Wno-psabi)
 if(MCA_SANITIZE)
-	list(TRANSFORM MCA_SOLVER_FLAGS REPLACE "^-O3$" "-O1")
+	list(TRANSFORM MCA_SOLVER_FLAGS REPLACE "^-O[0-3]$" "-O1")
 endif()
 
 function(mca_add_solver target level folder)

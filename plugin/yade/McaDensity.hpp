@@ -134,6 +134,7 @@ private:
 	void                       contactVolume(Row&);
 	void                       filterVolumes(bool account);
 	void                       volume(Row&, bool withContacts);
+	template <mca::EosKind law> void       volumeBy(Row&, bool withContacts);
 	void                       stress(Row&);
 	void                       contactFriction(Row&, const Side&, mca::Pair<Real> before, Real scale);
 	void                       scaleStresses(const Row&, Real ratio);

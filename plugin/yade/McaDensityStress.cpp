@@ -34,8 +34,13 @@ void McaDensity::contactVolume(Row& r)
 
 void McaDensity::volume(Row& r, bool withContacts)
 {
-	McaLawState&               l = *r.l;
-	const mca::VolumeConstants c(*r.material, r.d);
+	mca::dispatch(r.material->eos.kind, [&](auto law) { volumeBy<law.value>(r, withContacts); });
+}
+
+template <mca::EosKind law> void McaDensity::volumeBy(Row& r, bool withContacts)
+{
+	McaLawState&                    l = *r.l;
+	const mca::VolumeConstants<law> c(*r.material, r.d);
 	const Real                 Jo = r.m->volumeRatio, contactSum = withContacts ? l.contactSum : 0.;
 	const mca::PressureState   before { r.m->pressure, r.m->dissipated };
 	mca::Tensor<Real>          F = {};
@@ -47,21 +52,19 @@ void McaDensity::volume(Row& r, bool withContacts)
 		addDirection(directions, k, r.link[k].p ? 1. : 0.);
 		addDyad(F, k, x);
 	}
-	const auto          byLaw = [&](auto&& f) { return mca::dispatch(c.eos.kind, f); };
-	const auto          step  = [&](bool ofLinks) { return byLaw([&](auto law) { return mca::pressureStep<law.value>(c, J, Jo, before, ofLinks); }); };
-	const auto          stiff = [&](Real ratio) { return byLaw([&](auto law) { return mca::stiffness<law.value>(c, ratio); }); };
-	mca::PressureState  now = before;
+	const auto         step = [&](bool ofLinks) { return mca::pressureStep(c, J, Jo, before, ofLinks); };
+	mca::PressureState now  = before;
 	byRule(l.rule, [&](auto rule) {
 		if constexpr (rule.value == VolumeRule::affine) {
 			J   = mca::affineRatio(c, F, l.offset, l.rest, contactSum);
 			now = step(l.offset > 0);
 			const auto push = mca::affinePush(c, F, l.offset, now.P, l.cell);
 			l.txx = push.xx, l.txy = push.xy, l.tyx = push.yx, l.tyy = push.yy;
-			r.stiff = byLaw([&](auto law) { return mca::affineStiffness<law.value>(c, J, F, directions, l.offset, nearest2); });
+			r.stiff = mca::affineStiffness(c, J, F, directions, l.offset, nearest2);
 			if (!withContacts) return;
 			const Real Jc = mca::contactRatio(contactSum); // contacts have a volume of their own
-			l.share       = mca::pressureShare<mca::ofContacts(rule.value)>(mca::pressure(c.eos, Jc - 1.), Jc, l.cell * (1. / nLinks));
-			r.stiff       = std::max(r.stiff, stiff(Jc));
+			l.share       = mca::pressureShare<mca::ofContacts(rule.value)>(mca::pressure<law>(c.eos, Jc - 1.), Jc, l.cell * (1. / nLinks));
+			r.stiff       = std::max(r.stiff, mca::stiffness(c, Jc));
 		} else {
 			Real sum = 0;
 			for (int k = 0; k < nLinks; k++)
@@ -69,7 +72,7 @@ void McaDensity::volume(Row& r, bool withContacts)
 			J       = mca::volumeRatio<rule.value>((sum + contactSum - l.rest) * l.invN);
 			now     = step(true);
 			l.share = mca::pressureShare<rule.value>(now.P, J, l.cell * l.invN);
-			r.stiff = stiff(J);
+			r.stiff = mca::stiffness(c, J);
 		}
 	});
 	l.dTheta         = mca::dilation(J, Jo);

@@ -13,9 +13,10 @@ a record is rho0 c0^2, the slope of its shock adiabat at rest; a static value fr
 """
 import csv
 import difflib
+import json
 import math
 import reprlib
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, make_dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -26,8 +27,11 @@ from ._arguments import LARGEST, numbersOfAnyShape
 __all__ = ['Material', 'MaterialError', 'names', 'get', 'mcaMat', 'MCAMAT_ATTRIBUTES', 'YIELD_MODELS', 'EOS_MODELS']
 
 DATA = Path(__file__).with_name('data') / 'materials.csv'
-EOS_MODELS = ('shockAdiabat', 'linear', 'mieGruneisen')
-YIELD_MODELS = ('elastic', 'perfect', 'linearHardening', 'johnsonCook')
+STRENGTH = Path(__file__).with_name('data') / 'law_constants.csv'
+#: laws and their constants as the library knows them, by kind ('eos', 'yieldModel'); written by the build (plugin/laws.cpp)
+LAWS = json.loads(Path(__file__).with_name('data').joinpath('laws.json').read_text())
+EOS_MODELS = tuple(law['name'] for law in LAWS['eos'])
+YIELD_MODELS = tuple(law['name'] for law in LAWS['yieldModel'])
 DISTRIBUTIONS = ('uniform', 'normal', 'weibull')
 #: plastic strain up to which the straight line of ``linearHardening`` is fitted to the full curve [-]
 FIT_STRAIN = 0.5
@@ -37,25 +41,26 @@ class MaterialError(ValueError):
 	"""A material, attribute or value that the library cannot accept; the message says what is allowed."""
 
 
-@dataclass(frozen=True)
-class Material:
-	"""One set of constants of one metal. Attributes up to `viscosityQuadratic` carry the names of McaMat's attributes."""
+def _constants(kind):
+	"""What the constants of the laws of one kind are, by name: {name: dict of unit, default, range, ends, text}."""
+	return {c['name']: c for law in LAWS[kind] for c in law['constants']}
+
+
+#: constants of all laws by name
+CONSTANTS = {**_constants('eos'), **_constants('yieldModel')}
+_LawConstants = make_dataclass('_LawConstants', [(name, float, float(c['default'])) for name, c in CONSTANTS.items()], frozen=True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Material(_LawConstants):
+	"""One set of constants of one metal. Attributes up to `viscosityQuadratic`, and the constants of all laws (CONSTANTS), carry the names of McaMat's attributes."""
 	name: str
 	density: float  #: at rest [kg/m3]
-	bulkSoundSpeed: float  #: c0 of the shock adiabat D = c0 + b U [m/s]
-	hugoniotSlope: float  #: b of the shock adiabat [-]
-	gruneisen: float  #: Grueneisen coefficient at rest [-]
+	bulkSoundSpeed: float  #: c0 of the shock adiabat D = c0 + b U; the bulk modulus is density c0^2 [m/s]
 	shearModulus: float  #: [Pa]; nan where the source gives none
 	eos: str = 'shockAdiabat'  #: one of EOS_MODELS
 	yieldModel: str = 'elastic'  #: one of YIELD_MODELS
-	yieldStress: float = math.inf  #: initial yield stress; A of Johnson-Cook [Pa]
-	hardeningModulus: float = 0.0  #: slope of linear hardening, or B of Johnson-Cook [Pa]
-	hardeningExponent: float = 1.0  #: n of Johnson-Cook [-]
-	rateCoefficient: float = 0.0  #: C of Johnson-Cook [-]
-	referenceRate: float = 1.0  #: strain rate at which the static curve holds [1/s]
-	thermalSoftening: float = 1.0  #: m of Johnson-Cook [-]
-	meltTemperature: float = math.inf  #: [K]
-	referenceTemperature: float = 298.0  #: room temperature of the Johnson-Cook law [K]
+	referenceTemperature: float = 298.0  #: initial temperature [K]
 	heatCapacity: float = 0.0  #: [J/kg/K]
 	taylorQuinney: float = 0.9  #: share of plastic work that heats (Taylor & Quinney 1934) [-]
 	fractureStrain: float = math.inf  #: plastic strain at which a pair unlinks [-]
@@ -73,6 +78,7 @@ class Material:
 	johnsonCook: tuple = None  #: (A [Pa], B [Pa], n, C, m) or None
 	johnsonCookDamage: tuple = None  #: (D1 ... D5) or None [-]
 	steinbergGuinan: tuple = None  #: (Y0 [Pa], beta, n, Ymax [Pa]) or None
+	lawConstants: dict = field(default_factory=dict)  #: {law: {constant: value in SI units}} of laws whose constants stand in law_constants.csv
 	minimumPressure: float = 0.0  #: shock pressure from which on the adiabat holds [Pa]
 	eosSource: str = ''
 	strengthSource: str = ''
@@ -133,24 +139,14 @@ class Material:
 	def flowStress(self, plasticStrain, rate=None, temperature=None):
 		"""Yield stress [Pa] of the record's yieldModel; plasticStrain [-], rate [1/s] and temperature [K] may be arrays.
 
-		Rate and temperature count in 'johnsonCook' only; None means the reference rate and temperature. Raises MaterialError for negative or not finite ones.
+		They count where the law depends on them; None means the reference rate and temperature. Raises MaterialError for negative or not finite ones,
+		ImportError without YADE: the law is that of McaMat.
 		"""
-		e = numbersOfAnyShape('plasticStrain', plasticStrain, MaterialError, 0)
-		rate = None if rate is None else numbersOfAnyShape('rate', rate, MaterialError, 0)
-		temperature = None if temperature is None else numbersOfAnyShape('temperature', temperature, MaterialError, 0)
-		if self.yieldModel == 'elastic':
-			return np.full_like(e, math.inf)
-		if self.yieldModel == 'perfect':
-			return np.full_like(e, self.yieldStress)
-		if self.yieldModel == 'linearHardening':
-			return self.yieldStress + self.hardeningModulus * e
-		y = self.yieldStress + self.hardeningModulus * e**self.hardeningExponent
-		if rate is not None:  # never below the static curve
-			y = y * (1 + self.rateCoefficient * np.log(np.maximum(rate / self.referenceRate, 1.0)))
-		if temperature is not None:
-			t = (temperature - self.referenceTemperature) / (self.meltTemperature - self.referenceTemperature)
-			y = y * (1 - np.clip(t, 0, 1)**self.thermalSoftening)
-		return y
+		given = (('plasticStrain', plasticStrain, None, 0., 1e6), ('rate', rate, self.referenceRate, 1e-30, 1e30), ('temperature', temperature, self.referenceTemperature, 1e-9, 1e9))
+		values = [np.clip(numbersOfAnyShape(name, start if v is None and start is not None else v, MaterialError, 0), low, high) for name, v, start, low, high in given]
+		m = mcaMat(self, shearModulus=1.0)  # of no influence here, but a material without is none
+		e, r, t = np.broadcast_arrays(*values)
+		return np.array([m.flowStress(*map(float, point)) for point in zip(e.flat, r.flat, t.flat)]).reshape(e.shape)
 
 	def johnsonCookFractureStrain(self, triaxiality, rate=1.0, temperature=298.0):
 		"""Plastic strain at fracture by Johnson & Cook (1985) [-]; triaxiality = mean stress / Mises stress, tension positive.
@@ -167,7 +163,8 @@ class Material:
 
 
 #: attributes of McaMat that mcaMat() sets
-MCAMAT_ATTRIBUTES = tuple(f.name for f in fields(Material))[1:[f.name for f in fields(Material)].index('viscosityQuadratic') + 1]
+MCAMAT_ATTRIBUTES = tuple(f.name for f in fields(Material))[:[f.name for f in fields(Material)].index('viscosityQuadratic') + 1]
+MCAMAT_ATTRIBUTES = tuple(name for name in MCAMAT_ATTRIBUTES if name != 'name')
 
 
 def _number(row, key, unit=1.0, default=None):
@@ -185,8 +182,23 @@ def _record(row):
 	        staticBulkModulus=_number(row, 'K_GPa', 1e9, math.nan), johnsonCook=None if None in jc else jc,
 	        johnsonCookDamage=None if None in damage else damage, steinbergGuinan=None if None in sg else sg,
 	        minimumPressure=_number(row, 'Pmin_GPa', 1e9, 0.0), eosSource=row['eos_src'], strengthSource=row['str_src'])
+	m.lawConstants.update(_lawConstants().get(m.name, {}))
 	best = 'johnsonCook' if m.johnsonCook else 'linearHardening' if m.steinbergGuinan else 'elastic'
 	return _withYield(m, best)
+
+
+@lru_cache(maxsize=None)
+def _lawConstants():
+	"""{material: {law: {constant: value}}} of law_constants.csv."""
+	out = {}
+	with open(STRENGTH, newline='') as f:
+		for row in csv.DictReader(line for line in f if not line.startswith('#')):
+			out.setdefault(row['name'], {})[row['law']] = {k: float(v) for k, v in (pair.split('=') for pair in row['constants'].split())}
+	return out
+
+
+def _uses(kind, law):
+	return [c['name'] for c in next(x for x in LAWS[kind] if x['name'] == law)['uses']]
 
 
 def _withYield(m, model):
@@ -195,7 +207,7 @@ def _withYield(m, model):
 	'perfect' takes the initial yield stress. 'linearHardening' is the least-squares line through the static room-temperature curve
 	(Johnson-Cook, else Steinberg-Guinan) for plastic strains from 0 to FIT_STRAIN.
 	"""
-	none = dict(hardeningModulus=0.0, hardeningExponent=1.0, rateCoefficient=0.0, thermalSoftening=1.0)
+	none = {k: float(c['default']) for k, c in _constants('yieldModel').items() if k not in ('yieldStress', 'referenceRate', 'meltTemperature')}
 	if model == 'elastic':
 		return replace(m, yieldModel=model, yieldStress=math.inf, **none)
 	if model == 'johnsonCook':
@@ -203,6 +215,10 @@ def _withYield(m, model):
 			raise MaterialError("material '%s' has no Johnson-Cook constants; choose yieldModel 'linearHardening', 'perfect' or 'elastic'" % m.name)
 		a, b, n, c, t = m.johnsonCook
 		return replace(m, yieldModel=model, yieldStress=a, hardeningModulus=b, hardeningExponent=n, rateCoefficient=c, thermalSoftening=t)
+	if model in m.lawConstants:
+		return replace(m, yieldModel=model, **dict(none, **m.lawConstants[model]))
+	if model not in ('perfect', 'linearHardening'):
+		raise MaterialError("material '%s' has no constants of '%s' in the library; give %s yourself" % (m.name, model, ', '.join(_uses('yieldModel', model))))
 	if not (m.johnsonCook or m.steinbergGuinan):
 		raise MaterialError("material '%s' has no strength data; give yieldStress yourself or choose yieldModel 'elastic'" % m.name)
 	if model == 'perfect':
@@ -247,26 +263,25 @@ def get(name, yieldModel=None, **overrides):
 	if yieldModel is not None and yieldModel != m.yieldModel:
 		if yieldModel not in YIELD_MODELS:
 			raise MaterialError("yieldModel '%s' must be one of %s" % (yieldModel, ', '.join(YIELD_MODELS)))
-		given = 'yieldStress' in overrides and not (m.johnsonCook or m.steinbergGuinan)  # the caller brings the strength along
+		held = m.johnsonCook or m.steinbergGuinan if yieldModel in ('perfect', 'linearHardening', 'johnsonCook') else yieldModel in m.lawConstants
+		given = 'yieldStress' in overrides and not held  # the caller brings the strength along
 		m = replace(m, yieldModel=yieldModel) if given else _withYield(m, yieldModel)
 	known = {f.name for f in fields(Material)}
 	for key in overrides:
 		if key not in known:
 			near = difflib.get_close_matches(key, known, 1)
 			raise MaterialError("material has no attribute '%s'%s" % (key, " (did you mean '%s'?)" % near[0] if near else ''))
-	m = replace(m, **overrides)
+	m = replace(m, **dict(m.lawConstants.get(overrides.get('eos'), {}) if isinstance(overrides.get('eos'), str) else {}, **overrides))
 	_check(m)
 	return m
 
 
-_POSITIVE = ('density', 'bulkSoundSpeed', 'yieldStress', 'referenceRate', 'meltTemperature', 'fractureStrain', 'spallStrength',
-             'pairStrength', 'fractureStress')
-_NOT_NEGATIVE = ('hugoniotSlope', 'gruneisen', 'hardeningModulus', 'hardeningExponent', 'rateCoefficient', 'thermalSoftening', 'heatCapacity',
-                 'taylorQuinney', 'strengthSpread', 'frictionAngle', 'referenceTemperature', 'viscosityLinear', 'viscosityQuadratic', 'shearModulus')
+_POSITIVE = ('density', 'bulkSoundSpeed', 'fractureStrain', 'spallStrength', 'pairStrength', 'fractureStress')
+_NOT_NEGATIVE = ('heatCapacity', 'taylorQuinney', 'strengthSpread', 'frictionAngle', 'referenceTemperature', 'viscosityLinear', 'viscosityQuadratic', 'shearModulus')
 
 
 #: may be infinite: no plasticity, no fracture, no melting
-_INFINITE = ('yieldStress', 'meltTemperature', 'fractureStrain', 'spallStrength', 'pairStrength', 'fractureStress')
+_INFINITE = ('fractureStrain', 'spallStrength', 'pairStrength', 'fractureStress', *(name for name, c in CONSTANTS.items() if c['ends'][2]))
 
 
 def _check(m):
@@ -277,6 +292,10 @@ def _check(m):
 		v = getattr(m, k)
 		if not isinstance(v, (int, float, np.integer, np.floating)) or isinstance(v, bool) or isinstance(v, int) and abs(v) > LARGEST: refuse(k, 'a number')
 		if abs(v) > LARGEST and not (k in _INFINITE and v > 0): refuse(k, 'finite')
+	for k, c in CONSTANTS.items():  # the ranges that hold whatever law is chosen; McaMat checks those of the law, too
+		(least, most), (withLeast, withMost, infinite), v = c['range'], c['ends'], getattr(m, k)
+		inside = (v >= least if withLeast else v > least) and (v <= most if withMost else v < most)
+		if not (inside or infinite and v == math.inf): refuse(k, {(0, False): 'above 0', (0, True): '0 or above'}.get((least, withLeast), c['words']))
 	for k in _POSITIVE:
 		if not getattr(m, k) > 0: refuse(k, 'above 0')
 	for k in _NOT_NEGATIVE:  # an equation of state alone is a record too: no shear modulus

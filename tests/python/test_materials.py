@@ -66,7 +66,7 @@ def test_overrides_and_variants():
         (dict(name='WHA'), "did you mean"),
         (dict(name='4340', yieldModel='plastic'), 'perfect'),
         (dict(name='4340', yieldStres=1e9), "yieldStress"),
-        (dict(name='4340', yieldStress=-1e9), 'above 0'),
+        (dict(name='4340', yieldStress=-1e9), '0 or above'),
         (dict(name='4340', hugoniotSlope=-1.), '0 or above'),
         (dict(name='4340', density=float('nan')), 'above 0'),
         (dict(name='4340', eos='tillotson'), 'mieGruneisen'),

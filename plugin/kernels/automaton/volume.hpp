@@ -59,8 +59,8 @@ template <VolumeRule rule> MCA_INLINE double pressureShape(double d, double invR
 MCA_INLINE double perArea(double d) { return 1. / (Lattice::spread * Lattice::spread * (d * d)); }
 MCA_INLINE double linkDeterminant(const Tensor<double>& sum, double perArea) { return determinant(sum) * perArea; }
 
-/// What the volume of an automaton needs of its material and diameter.
-struct VolumeConstants {
+/// What the volume of an automaton needs of its material and diameter; law: kind of its equation of state.
+template <EosKind law> struct VolumeConstants {
 	Eos    eos;
 	double d2;      ///< diameter squared [m2]
 	double perArea; ///< see linkDeterminant() [1/m2]
@@ -68,7 +68,12 @@ struct VolumeConstants {
 	double perRho;  ///< 1/rho0 [m3/kg]
 	double clampAt; ///< volume strain at which the equation of state is clamped [-]
 	VolumeConstants(const Material& m, double d)
-	        : eos(m.eos), d2(d * d), perArea(mca::perArea(d)), G43(m.G * (4. / 3.)), perRho(1. / m.eos.rho0), clampAt(m.eos.clampStrain())
+		: eos(m.eos)
+		, d2(d * d)
+		, perArea(mca::perArea(d))
+		, G43(m.G * (4. / 3.))
+		, perRho(1. / m.eos.rho0)
+		, clampAt(LawOf<law>::clampStrain(m.eos))
 	{
 	}
 };
@@ -80,7 +85,7 @@ struct PressureState {
 };
 /// J: new volume ratio, Jo: that of the step before, old: pressure and energy then. ofLinks: the volume is that of links. Contacts push by the cold curve
 /// alone: so does an automaton without links work, and its internal energy keeps the rest.
-template <EosKind law> MCA_INLINE PressureState pressureStep(const VolumeConstants& c, double J, double Jo, PressureState old, bool ofLinks)
+template <EosKind law> MCA_INLINE PressureState pressureStep(const VolumeConstants<law>& c, double J, double Jo, PressureState old, bool ofLinks)
 {
 	PressureState now { pressure<law>(c.eos, J - 1.), old.e };
 	if constexpr (LawOf<law>::heats) {
@@ -94,7 +99,7 @@ template <EosKind law> MCA_INLINE PressureState pressureStep(const VolumeConstan
 MCA_INLINE double dilation(double J, double Jo) { return 2. * (J - Jo) / (J + Jo); }
 MCA_INLINE bool   validVolume(double J) { return J > 0. && J < 1e6; } // false for NaN as well
 /// (3) over the density: square of a longitudinal wave's speed in the rest frame [m2/s2]; bulk, shear >= 1: how much stiffer than in the perfect packing.
-template <EosKind law> MCA_INLINE double stiffness(const VolumeConstants& c, double J, double bulk = 1., double shear = 1.)
+template <EosKind law> MCA_INLINE double stiffness(const VolumeConstants<law>& c, double J, double bulk = 1., double shear = 1.)
 {
 	return (tangent<law>(c.eos, J - 1.) * bulk + c.G43 * shear) * c.perRho / J;
 }
@@ -112,13 +117,13 @@ struct AffineRest {
 	double rest;   ///< last bit of J = 1 at rest: no pressure, whether asleep or awake
 };
 /// sum = sum of r (x) e_k at rest [m].
-MCA_INLINE AffineRest affineRest(const VolumeConstants& c, const Tensor<double>& sum)
+template <EosKind law> MCA_INLINE AffineRest affineRest(const VolumeConstants<law>& c, const Tensor<double>& sum)
 {
 	const double det = linkDeterminant(sum, c.perArea), factor = det > minVolume ? 1. / det : 0.;
 	return { factor, factor > 0. ? 1. - factor * det : 0. };
 }
 /// J by the links, or by the contacts (sum of their volume terms) where the links have none.
-MCA_INLINE double affineRatio(const VolumeConstants& c, const Tensor<double>& sum, double factor, double rest, double contactSum)
+template <EosKind law> MCA_INLINE double affineRatio(const VolumeConstants<law>& c, const Tensor<double>& sum, double factor, double rest, double contactSum)
 {
 	const double det = linkDeterminant(sum, c.perArea);
 	return factor > 0. ? factor * det + rest : contactRatio(contactSum);
@@ -126,7 +131,7 @@ MCA_INLINE double affineRatio(const VolumeConstants& c, const Tensor<double>& su
 /// The factor with which other links measure the volume J; det: linkDeterminant() of these links.
 MCA_INLINE double affineFactor(double J, double rest, double det) { return det > minVolume && J > 0. ? (J - rest) / det : 0.; }
 /// P pushes link k by affinePush() e_k [N/m]: P dV/dr, V = cell J.
-MCA_INLINE Tensor<double> affinePush(const VolumeConstants& c, const Tensor<double>& sum, double factor, double P, double cell)
+template <EosKind law> MCA_INLINE Tensor<double> affinePush(const VolumeConstants<law>& c, const Tensor<double>& sum, double factor, double P, double cell)
 {
 	const double         a = factor * c.perArea * P * cell;
 	const Tensor<double> k = cofactor(sum);
@@ -135,7 +140,7 @@ MCA_INLINE Tensor<double> affinePush(const VolumeConstants& c, const Tensor<doub
 /// stiffness(), and how much stiffer than in the perfect packing: the volume by the sum of (dJ/dr_k)^2, the pair law by the closest link. directions: sum
 /// of e_k (x) e_k; nearest2 = smallest r^2 [m2]. Covers edges and corners of free surfaces up to nu = 0.49, measured; beyond 4 what is torn and sheared.
 template <EosKind law>
-MCA_INLINE double affineStiffness(const VolumeConstants& c, double J, const Tensor<double>& F, const Symmetric<double>& e, double factor, double nearest2)
+MCA_INLINE double affineStiffness(const VolumeConstants<law>& c, double J, const Tensor<double>& F, const Symmetric<double>& e, double factor, double nearest2)
 {
 	const double spread = e.xx * (F.yy * F.yy + F.yx * F.yx) - 2. * e.xy * (F.yy * F.xy + F.yx * F.xx) + e.yy * (F.xy * F.xy + F.xx * F.xx);
 	const double one = max(factor * factor * spread * c.perArea * (1. / nLinks), 1.), bulk = max(min(one * one, 4.), one);

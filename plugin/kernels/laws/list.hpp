@@ -4,11 +4,14 @@
 #pragma once
 #include "eos/linear.hpp"
 #include "eos/mieGruneisen.hpp"
+#include "eos/polynomial.hpp"
 #include "eos/shockAdiabat.hpp"
 #include "flow/elastic.hpp"
 #include "flow/johnsonCook.hpp"
 #include "flow/linearHardening.hpp"
 #include "flow/perfect.hpp"
+#include "flow/steinbergGuinan.hpp"
+#include "flow/zerilliArmstrong.hpp"
 #include <cstdint>
 #include <type_traits>
 
@@ -16,14 +19,17 @@
 #define MCA_EOS_LAWS(L) \
 	L(shockAdiabat, ShockAdiabat, "shock adiabat D = c0 + b U, without energy") \
 	L(linear, Linear, "pressure linear in the volume strain") \
-	L(mieGruneisen, MieGruneisen, "Mie-Grueneisen about the shock adiabat")
+	L(mieGruneisen, MieGruneisen, "Mie-Grueneisen about the shock adiabat") \
+	L(polynomial, Polynomial, "polynomial in the compression, linear in the internal energy")
 
 /// Flow stresses.
 #define MCA_FLOW_LAWS(L) \
 	L(elastic, Elastic, "never yields") \
 	L(perfect, Perfect, "constant yield stress") \
 	L(linearHardening, LinearHardening, "yield stress linear in the plastic strain") \
-	L(johnsonCook, JohnsonCook, "Johnson and Cook 1983: strain, strain rate, temperature")
+	L(johnsonCook, JohnsonCook, "Johnson and Cook 1983: strain, strain rate, temperature") \
+	L(zerilliArmstrong, ZerilliArmstrong, "Zerilli and Armstrong 1987, bcc and fcc: strain, strain rate, temperature") \
+	L(steinbergGuinan, SteinbergGuinan, "Steinberg, Cochran and Guinan 1980 at constant shear modulus: strain, temperature")
 
 // ---- what follows from the list
 

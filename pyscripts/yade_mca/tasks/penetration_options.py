@@ -3,6 +3,7 @@
 import argparse
 import math
 
+from ..materials import EOS_MODELS, YIELD_MODELS
 from .cli import positive
 from .registry import UsageError
 
@@ -54,8 +55,8 @@ SCENE = {
         'rod-diameter': (10., dict(type=positive(float, 'mm'), metavar='MM', help='of the rod')),
         'angle': (0., dict(type=degrees(180), metavar='DEG', help='by which the packings are turned against the normal of the plate and the axis of the rod')),
         'obliquity': (0., dict(type=degrees(75), metavar='DEG', help='between the flight of the rod and the normal of the plate')),
-        'yield-model': (None, dict(choices=['johnsonCook', 'linearHardening', 'perfect', 'elastic'], help='of both materials (default: Johnson-Cook)')),
-        'eos': ('shockAdiabat', dict(choices=['shockAdiabat', 'mieGruneisen', 'linear'], help='equation of state of both materials')),
+        'yield-model': (None, dict(choices=list(YIELD_MODELS), help='of both materials (default: Johnson-Cook)')),
+        'eos': ('shockAdiabat', dict(choices=list(EOS_MODELS), help='equation of state of both materials')),
         'fracture-strain': (1., dict(type=positive(float), metavar='X', help='plastic strain at which pairs unlink')),
         'spall': (1., dict(type=positive(float), metavar='X', help='factor on the tensile strengths, 3.8 GPa of the rod and 3.0 GPa of the plate')),
         'spread': (0.05, dict(type=fraction, metavar='X', help='relative scatter of the strengths')),

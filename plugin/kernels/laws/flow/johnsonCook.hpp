@@ -4,10 +4,10 @@
 #include "../law.hpp"
 
 #define MCA_CONSTANTS_johnsonCook(C) \
-	C(hardeningExponent, "-", 1, laws::finite, "n of Johnson-Cook") \
-	C(rateCoefficient, "-", 0, laws::finite, "C of Johnson-Cook") \
-	C(referenceRate, "1/s", 1, laws::finite, "strain rate at which the static curve holds, for laws that depend on the rate") \
-	C(thermalSoftening, "-", 1, laws::finite, "m of Johnson-Cook") \
+	C(hardeningExponent, "-", 1, laws::notNegative, "n of Johnson-Cook") \
+	C(rateCoefficient, "-", 0, laws::notNegative, "C of Johnson-Cook") \
+	C(referenceRate, "1/s", 1, laws::positive, "strain rate at which the static curve holds, for laws that depend on the rate") \
+	C(thermalSoftening, "-", 1, laws::notNegative, "m of Johnson-Cook") \
 	C(meltTemperature, "K", std::numeric_limits<double>::infinity(), laws::aboveZero.with("infinite: never"), "melting temperature")
 #define MCA_USES_johnsonCook(U) \
 	U(yieldStress, laws::notNegative) \
