@@ -17,10 +17,11 @@ Account Solver::account() const
 		for (int l = 0; l < S.blocks[b].count; l++) {
 			const size_t i = b * blockSize + l;
 			v += volumeEnergy(m, S.cell[i], S.J[i], S.heat.empty() ? 0. : S.heat[i]);
-			if (S.factor[i] > 0. && S.blocks[b].contact) v += coldEnergyAt(i, contactRatio(scratch.sum[i])); // affine rule: contacts have a volume of their own
+			if (S.factor[i] > 0. && S.blocks[b].contact)
+				v += coldEnergyAt(i, contactRatio(scratch.sum[i])); // affine rule: contacts have a volume of their own
 			q += deviatorEnergyOf(i);
 			if (S.flags[i] & tiedBit) { // its mass is on the grid; a free spin is its own
-				if (S.ar[i] > 0) k += 0.5 * S.inertia[i] * sqr(S.omega[i]), a += S.inertia[i] * S.omega[i];
+				if (S.perInertia[i] > 0) k += 0.5 * S.inertia[i] * sqr(S.omega[i]), a += S.inertia[i] * S.omega[i];
 				continue;
 			}
 			k += 0.5 * (S.mass[i] * (sqr(S.vx[i]) + sqr(S.vy[i])) + S.inertia[i] * sqr(S.omega[i]));
@@ -53,7 +54,9 @@ double Solver::deviatorEnergyOf(size_t i) const
 	for (int k = 0; k < nLinks; k++)
 		if (holds(S.flags[i], k)) {
 			const size_t j = S.neighbour[linkSlot(i, k)];
-			pairs += linkWeight(S.flags[i], k) * pairEnergy(S.s[linkSlot(i, k)], S.tau[linkSlot(i, k)], S.J[i], S.pairTwoG(S.speciesOf(i), j, arm(S.diameter[i], S.diameter[j])));
+			pairs += linkWeight(S.flags[i], k)
+				* pairEnergy(
+					 S.s[linkSlot(i, k)], S.tau[linkSlot(i, k)], S.J[i], S.pairTwoG(S.speciesOf(i), j, arm(S.diameter[i], S.diameter[j])));
 		}
 	return deviatorEnergy(S.materialOf(i).G, S.diameter[i], pairs, S.J[i], S.szz[i], S.invN[i]);
 }

@@ -18,10 +18,14 @@ namespace {
 			return s.str();
 		};
 		for (double v : { a.x, a.y, a.vx, a.vy, a.omega, a.angle, a.mass, a.inertia, a.diameter, a.weight, a.strength })
-			if (!std::isfinite(v)) refuse("position, velocity, mass, inertia, diameter, weight or strength is not finite (" + number(v) + "); give finite numbers.");
+			if (!std::isfinite(v))
+				refuse("position, velocity, mass, inertia, diameter, weight or strength is not finite (" + number(v)
+				       + "); give finite numbers.");
 		if (!(a.diameter > 0)) refuse("diameter " + number(a.diameter) + " m must be above zero.");
-		if (!(std::fabs(a.x) < 1e9 * a.diameter && std::fabs(a.y) < 1e9 * a.diameter)) refuse("position (" + number(a.x) + ", " + number(a.y) + ") m must be within 1e9 diameters of the origin.");
-		if (!(a.temperature >= 0 && std::isfinite(a.temperature))) refuse("temperature " + number(a.temperature) + " K must be finite and not negative.");
+		if (!(std::fabs(a.x) < 1e9 * a.diameter && std::fabs(a.y) < 1e9 * a.diameter))
+			refuse("position (" + number(a.x) + ", " + number(a.y) + ") m must be within 1e9 diameters of the origin.");
+		if (!(a.temperature >= 0 && std::isfinite(a.temperature)))
+			refuse("temperature " + number(a.temperature) + " K must be finite and not negative.");
 		if (!(a.mass > 0)) refuse("mass " + number(a.mass) + " kg/m must be above zero; set state.mass (rho times area).");
 		if (a.freeR && !(a.inertia > 0)) refuse("inertia " + number(a.inertia) + " kg m must be above zero, or block the rotation.");
 		if (!(a.weight > 0 && a.weight <= 2)) refuse("weight " + number(a.weight) + " must be in (0, 2].");
@@ -58,13 +62,8 @@ void Solver::makeBlocks(const std::vector<Automaton>& in)
 	}
 	source.resize(S.blocks.size() * blockSize, -1);
 	const size_t n = source.size();
-	S.eachArray([&](auto& v) { v.assign(n, {}); });
-	for (auto v : { &S.ex, &S.ey, &S.et, &S.dampX, &S.dampY })
-		v->clear();
-	bool heats = false;
-	for (auto& m : S.materials)
-		heats |= m.eos.heats();
-	if (!heats) S.heat.clear();
+	S.eachArray([&](auto& v, Presence p) { v.assign(p == Presence::always ? n : 0, {}); });
+	if (std::any_of(S.materials.begin(), S.materials.end(), [](const Material& m) { return m.eos.heats(); })) S.heat.assign(n, 0.);
 	int32_t maxId = -1;
 	for (auto& a : in)
 		maxId = std::max(maxId, a.id);
@@ -75,7 +74,8 @@ void Solver::makeBlocks(const std::vector<Automaton>& in)
 	for (size_t i = 0; i < n; i++) {
 		const Species& sp = S.species[S.blocks[i / blockSize].species];
 		S.diameter[i]     = sp.d;
-		S.J[i] = 1., S.mass[i] = 1., S.inertia[i] = 1., S.invN[i] = 1. / nLinks, S.cell[i] = Lattice::cell(sp.d), S.id[i] = -1, S.strength[i] = 1., S.weight[i] = 1.;
+		S.J[i] = 1., S.mass[i] = 1., S.inertia[i] = 1., S.invN[i] = 1. / nLinks, S.cell[i] = Lattice::cell(sp.d), S.id[i] = -1, S.strength[i] = 1.,
+		S.weight[i]      = 1.;
 		S.temperature[i] = S.materials[sp.material].yield.referenceTemperature;
 		if (source[i] < 0) { // padding sits on its block's first automaton, without links
 			const size_t first = i - i % blockSize;
@@ -87,7 +87,7 @@ void Solver::makeBlocks(const std::vector<Automaton>& in)
 		place[a.id] = int32_t(i);
 		S.x[i] = a.x, S.y[i] = a.y, S.vx[i] = a.vx, S.vy[i] = a.vy, S.omega[i] = a.omega, S.angle[i] = a.angle;
 		S.mass[i] = a.mass, S.inertia[i] = a.inertia, S.weight[i] = a.weight, S.strength[i] = a.strength, S.eqps[i] = a.eqps;
-		S.ax[i] = a.freeX ? 1. / a.mass : 0., S.ay[i] = a.freeY ? 1. / a.mass : 0., S.ar[i] = a.freeR ? 1. / a.inertia : 0.;
+		S.perMassX[i] = a.freeX ? 1. / a.mass : 0., S.perMassY[i] = a.freeY ? 1. / a.mass : 0., S.perInertia[i] = a.freeR ? 1. / a.inertia : 0.;
 		S.id[i] = a.id, S.group[i] = a.group;
 		if (a.temperature > 0) S.temperature[i] = a.temperature;
 		S.cell[i] *= a.weight;
@@ -127,7 +127,8 @@ void Solver::makeLinks(const Solver* old)
 				if (it == cells.end()) continue;
 				for (int32_t j : it->second) {
 					if (size_t(j) == i || (known(i) && known(j))) continue;
-					const double dx = S.x[j] - S.x[i], dy = S.y[j] - S.y[i], r = std::sqrt(dx * dx + dy * dy), d = 0.5 * (S.diameter[i] + S.diameter[j]);
+					const double dx = S.x[j] - S.x[i], dy = S.y[j] - S.y[i], r = std::sqrt(dx * dx + dy * dy),
+						     d = 0.5 * (S.diameter[i] + S.diameter[j]);
 					if (r < 0.5 * d) overlapError(i, j, r / d);
 					if (S.group[i] != S.group[j] || r >= options.linkFactor * d) continue;
 					if (found < nLinks) near[i].other[found] = j, near[i].angle[found] = std::atan2(dy, dx);
@@ -139,31 +140,39 @@ void Solver::makeLinks(const Solver* old)
 	}
 	if (crowded >= 0) {
 		std::ostringstream s;
-		s << "automaton " << S.id[crowded] << " at (" << S.x[crowded] << ", " << S.y[crowded] << ") m has " << most << " neighbours within " << options.linkFactor
-		  << " diameters; the hexagonal packing has at most 6. The spacing of the packing does not match the diameter " << S.diameter[crowded] << " m: build the packing with this spacing.";
+		s << "automaton " << S.id[crowded] << " at (" << S.x[crowded] << ", " << S.y[crowded] << ") m has " << most << " neighbours within "
+		  << options.linkFactor << " diameters; the hexagonal packing has at most 6. The spacing of the packing does not match the diameter "
+		  << S.diameter[crowded] << " m: build the packing with this spacing.";
 		throw Error(s.str());
 	}
 	placeLinks(near, old);
 	for (size_t i = 0; i < n; i++)
 		if (S.id[i] >= 0 && (S.flags[i] & linkBits) != linkBits) S.flags[i] |= exposedBit;
-	// half links along weighted rims: both ends are cut cells and the pair borders on one triangle of the lattice only
 	if (!options.fullLinks)
-		for (size_t i = 0; i < n; i++) {
-			if (S.id[i] < 0 || S.weight[i] >= 0.999 || known(i)) continue;
-			double sum = 0;
-			for (int k = 0; k < nLinks; k++) {
-				if (!((S.flags[i] >> k) & 1)) continue;
-				const int32_t j = S.neighbour[linkSlot(i, k)];
-				int           common = 0;
-				for (int a = 0; a < nLinks; a++)
-					for (int b = 0; b < nLinks; b++)
-						common += ((S.flags[i] >> a) & 1) && ((S.flags[j] >> b) & 1) && S.neighbour[linkSlot(i, a)] == S.neighbour[linkSlot(j, b)];
-				const bool half = S.weight[j] < 0.999 && common <= 1;
-				if (half) S.flags[i] |= 1 << (halfShift + k);
-				sum += half ? 0.5 : 1.;
-			}
-			S.invN[i] = 1. / std::max(sum, nLinks * S.weight[i]);
-		}
+		for (size_t i = 0; i < n; i++)
+			if (S.id[i] >= 0 && S.weight[i] < 0.999 && !known(i)) halveLinks(i);
+}
+
+/// Links along weighted rims: both ends are cut cells and the pair borders on one triangle of the lattice only.
+void Solver::halveLinks(size_t i)
+{
+	Store&     S      = store;
+	const auto common = [&](size_t j) { // neighbours of both
+		int n = 0;
+		for (int a = 0; a < nLinks; a++)
+			for (int b = 0; b < nLinks; b++)
+				n += ((S.flags[i] >> a) & 1) && ((S.flags[j] >> b) & 1) && S.neighbour[linkSlot(i, a)] == S.neighbour[linkSlot(j, b)];
+		return n;
+	};
+	double sum = 0;
+	for (int k = 0; k < nLinks; k++) {
+		if (!((S.flags[i] >> k) & 1)) continue;
+		const size_t j    = size_t(S.neighbour[linkSlot(i, k)]);
+		const bool   half = S.weight[j] < 0.999 && common(j) <= 1;
+		if (half) S.flags[i] |= 1 << (halfShift + k);
+		sum += half ? 0.5 : 1.;
+	}
+	S.invN[i] = 1. / std::max(sum, nLinks * S.weight[i]);
 }
 
 // Link k points at 60 k degrees in the frame of the packing. The frame is found from one automaton of each linked body and handed on from
@@ -203,7 +212,8 @@ void Solver::placeLinks(const std::vector<Near>& near, const Solver* old)
 				off += turn - slot;
 				if (std::fabs(turn - slot) > 0.42 || ((S.flags[i] >> k) & 1)) {
 					std::ostringstream s;
-					s << "automaton " << S.id[i] << " at (" << S.x[i] << ", " << S.y[i] << ") m: its neighbours do not stand at multiples of 60 degrees (one is off by " << 60. * std::fabs(turn - slot)
+					s << "automaton " << S.id[i] << " at (" << S.x[i] << ", " << S.y[i]
+					  << ") m: its neighbours do not stand at multiples of 60 degrees (one is off by " << 60. * std::fabs(turn - slot)
 					  << " degrees). Link hexagonal packings of one orientation only; give bodies of another orientation another mask.";
 					throw Error(s.str());
 				}
@@ -222,7 +232,9 @@ void Solver::placeLinks(const std::vector<Near>& near, const Solver* old)
 	for (size_t i = 0; i < S.size(); i++)
 		for (int k = 0; k < nLinks; k++)
 			if (((S.flags[i] >> k) & 1) && S.neighbour[linkSlot(S.neighbour[linkSlot(i, k)], Lattice::opposite(k))] != int32_t(i))
-				throw Error("automata " + std::to_string(S.id[i]) + " and " + std::to_string(S.id[S.neighbour[linkSlot(i, k)]]) + " see each other in directions that do not belong to one hexagonal packing; build the body as one packing.");
+				throw Error(
+					"automata " + std::to_string(S.id[i]) + " and " + std::to_string(S.id[S.neighbour[linkSlot(i, k)]])
+					+ " see each other in directions that do not belong to one hexagonal packing; build the body as one packing.");
 }
 
 std::vector<std::pair<int32_t, int32_t>> Solver::links() const

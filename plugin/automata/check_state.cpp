@@ -82,25 +82,22 @@ namespace {
 	void checkArrays(const Store& S, bool stopped)
 	{
 		const size_t n = S.size();
-		need(size({ &S.x,   &S.y,        &S.vx,          &S.vy,       &S.omega,     &S.angle, &S.mass,   &S.inertia, &S.ax,    &S.ay,
-		            &S.ar,  &S.diameter, &S.cell,        &S.invN,     &S.rest,      &S.J,     &S.dTheta, &S.P,       &S.h,     &S.factor,
-		            &S.szz, &S.eqps,     &S.temperature, &S.strength, &S.criterion, &S.fx,    &S.fy,     &S.torque,  &S.weight },
-		          n),
-		     "the length of an array");
+		const_cast<Store&>(S).eachArray(
+			[&](auto& v, Presence p) { need(v.size() == n || (p == Presence::whenUsed && v.empty()), "the length of an array"); });
 		bool heats = false;
 		for (const Material& m : S.materials) heats |= m.eos.heats();
-		need(size({ &S.heat }, heats ? n : 0) && (size({ &S.ex, &S.ey, &S.et }, 0) || size({ &S.ex, &S.ey, &S.et }, n))
-		             && (size({ &S.dampX, &S.dampY }, 0) || size({ &S.dampX, &S.dampY }, n)),
+		need(S.heat.empty() != heats && S.outsideX.size() == S.outsideY.size() && S.outsideX.size() == S.outsideTorque.size()
+		             && S.dampX.size() == S.dampY.size(),
 		     "the length of an array");
 		for (auto v : { &S.x, &S.y, &S.vx, &S.vy, &S.omega, &S.angle, &S.rest, &S.factor, &S.inertia }) need(finite(*v), "a position or velocity");
 		for (auto v : { &S.mass, &S.diameter, &S.cell, &S.invN, &S.strength, &S.weight }) need(positive(*v), "a mass or size");
-		for (auto v : { &S.ax, &S.ay, &S.ar, &S.dampX, &S.dampY }) need(notNegative(*v), "a mass or damping");
+		for (auto v : { &S.perMassX, &S.perMassY, &S.perInertia, &S.dampX, &S.dampY }) need(notNegative(*v), "a mass or damping");
 		for (size_t i = 0; i < n; i++) need(S.diameter[i] == S.species[size_t(S.speciesOf(i))].d, "a diameter");
 		const size_t links = n * nLinks;
 		need(S.neighbour.size() == links && S.s.size() == links && S.tau.size() == links, "the length of the links");
 		if (stopped) return;
-		for (auto v :
-		     { &S.dTheta, &S.P, &S.h, &S.szz, &S.temperature, &S.criterion, &S.heat, &S.fx, &S.fy, &S.torque, &S.ex, &S.ey, &S.et, &S.s, &S.tau })
+		for (auto v : { &S.dTheta, &S.P, &S.h, &S.szz, &S.temperature, &S.criterion, &S.heat, &S.fx, &S.fy, &S.torque, &S.outsideX, &S.outsideY,
+		                &S.outsideTorque, &S.s, &S.tau })
 			need(finite(*v), "a stress or force");
 		need(positive(S.J) && notNegative(S.eqps), "a volume or strain");
 	}

@@ -8,15 +8,12 @@ namespace {
 	constexpr long parallelFrom = 2048; ///< half-contacts below which waking a thread costs more than it brings
 	/// The arrays as bare pointers: through the vectors their starts would be read again for each contact, and nothing would vectorise.
 	struct View {
-		const int32_t *owner, *other, *reverse;
-		double *       s, *tau, *rest, *a, *b, *c, *dx, *dy, *r2, *pushing, *touch, *along, *press;
-		const double * d, *twoG, *perTwoG, *perOwnG, *friction, *viscLinear, *viscQuadratic, *arm;
-		explicit View(Contacts& C)
-		        : owner(C.owner.data()), other(C.other.data()), reverse(C.reverse.data()), s(C.s.data()), tau(C.tau.data()), rest(C.rest.data()), a(C.a.data()), b(C.b.data()), c(C.c.data())
-		        , dx(C.dx.data()), dy(C.dy.data()), r2(C.r2.data()), pushing(C.pushing.data()), touch(C.touch.data()), along(C.along.data()), press(C.press.data()), d(C.d.data())
-		        , twoG(C.twoG.data()), perTwoG(C.perTwoG.data()), perOwnG(C.perOwnG.data()), friction(C.friction.data()), viscLinear(C.viscLinear.data()), viscQuadratic(C.viscQuadratic.data()), arm(C.arm.data())
-		{
-		}
+#define MCA_POINTER(name, type, presence, text) type* name;
+		MCA_CONTACT_FIELDS(MCA_POINTER)
+#undef MCA_POINTER
+#define MCA_POINT(name, type, presence, text) name = C.name.data();
+		explicit View(Contacts& C) { MCA_CONTACT_FIELDS(MCA_POINT) }
+#undef MCA_POINT
 	};
 	/// Sums of K quantities over each row, in the order of the row. All in one go: rows are short, and their ends cost more than the sums.
 	template <size_t K> void addRows(const Contacts& C, const std::array<const double*, K>& from, const std::array<double*, K>& to)
@@ -48,9 +45,9 @@ namespace {
 		const double      rest = V.rest[c], d = V.d[c], r2 = dot(r, r), on = pushes(r2, rest, d);
 		V.dx[c] = r.x, V.dy[c] = r.y, V.r2[c] = r2;
 		V.pushing[c] = on;
-		V.a[c]       = on > 0. ? volumeTerm<rule>(rest, r2) : 0.;
+		V.first[c]       = on > 0. ? volumeTerm<rule>(rest, r2) : 0.;
 		V.rest[c]    = restAfter(rest, r2, d);
-		V.b[c]       = on > 0. ? r2 / (rest * rest) : 1.;
+		V.second[c]       = on > 0. ? r2 / (rest * rest) : 1.;
 	}
 	template <VolumeRule rule> void volumeTerms(const Store& S, Contacts& C)
 	{
@@ -74,12 +71,13 @@ namespace {
 		const Vec<double> r = { V.dx[c], V.dy[c] }, v = { M.vx[j] - M.vx[i], M.vy[j] - M.vy[i] };
 		const double      touch = max(V.pushing[c], V.pushing[V.reverse[c]]), perOldJ = perOldRatio(M.dTheta[i], M.J[i]);
 		const Pair<double> old { V.s[c] * perOldJ, V.tau[c] * perOldJ };
-		const Pair<double> all = trialStress(old, strainIncrement(r, v * dt, pairSpin(M.omega[i], M.omega[j], V.arm[c], dt)), pairDilation(M.dTheta[i], M.dTheta[j]), V.twoG[c]);
+		const auto         strain = strainIncrement(r, v * dt, pairSpin(M.omega[i], M.omega[j], V.arm[c], dt));
+		const Pair<double> all = trialStress(old, strain, pairDilation(M.dTheta[i], M.dTheta[j]), V.twoG[c]);
 		const Pair<double> now { touch > 0. ? all.normal : 0., touch > 0. ? all.shear : 0. };
 		V.touch[c] = touch, V.along[c] = dot(r, v);
-		V.b[c] = old.normal, V.c[c] = old.shear; // for the account
+		V.second[c] = old.normal, V.third[c] = old.shear; // for the account
 		V.s[c] = now.normal, V.tau[c] = now.shear;
-		V.a[c] = square(now);
+		V.first[c] = square(now);
 		if (account) V.press[c] = product(old, now); // place for the sums; the pressure comes later
 		return dot(v, v);
 	}
@@ -98,12 +96,14 @@ namespace {
 	template <bool account> MCA_INLINE void frictionOf(const View& V, const double* J, const double* dTheta, const double* scale, long c)
 	{
 		const int32_t      i = V.owner[c];
-		const ContactSide  side { { V.b[c], V.c[c] }, { V.s[c], V.tau[c] }, V.press[c], V.r2[c], V.d[c], V.friction[c], J[i], scale[i], V.touch[c] > 0. };
-		const Pair<double> after = afterFriction(side);
+				  const ContactSide  side {
+                        { V.second[c], V.third[c] }, { V.s[c], V.tau[c] }, V.press[c], V.r2[c], V.d[c], V.friction[c], J[i], scale[i], V.touch[c] > 0.
+                };
+				  const Pair<double> after = afterFriction(side);
 		V.s[c] = after.normal, V.tau[c] = after.shear;
 		if (account) {
 			const ContactWork w = contactWork(side, after, V.perTwoG[c], V.perOwnG[c], dTheta[i], dTheta[V.other[c]]);
-			V.a[c] = w.friction, V.b[c] = w.coupling, V.c[c] = w.plastic;
+			V.first[c] = w.friction, V.second[c] = w.coupling, V.third[c] = w.plastic;
 		}
 	}
 	template <bool account> void friction(const Store& S, Contacts& C, const double* scale)
@@ -123,8 +123,9 @@ namespace {
 #pragma omp parallel for simd schedule(static) firstprivate(V) if (n >= parallelFrom)
 		for (long c = 0; c < n; c++) {
 			const int32_t r   = V.reverse[c];
-			const double  inv = 1. / V.r2[c], mine = h[V.owner[c]] * pressureShape<rule>(V.rest[c], inv), theirs = h[V.other[c]] * pressureShape<rule>(V.rest[r], inv);
-			V.press[c] = (V.pushing[c] > 0. ? mine : 0.) + (V.pushing[r] > 0. ? theirs : 0.);
+					  const double  inv = 1. / V.r2[c], mine = h[V.owner[c]] * pressureShape<rule>(V.rest[c], inv),
+						       theirs = h[V.other[c]] * pressureShape<rule>(V.rest[r], inv);
+					  V.press[c] = (V.pushing[c] > 0. ? mine : 0.) + (V.pushing[r] > 0. ? theirs : 0.);
 		}
 	}
 
@@ -137,7 +138,7 @@ namespace {
 		const Pair<double> both { on * (area * (V.s[c] + V.s[r])), on * (area * (V.tau[c] + V.tau[r])) };
 		const double       q  = on * viscousCoefficient(V.along[c], inv, V.viscLinear[c], V.viscQuadratic[c], Lattice::width(d)), pr = on * V.press[c];
 		const Vec<double>  f  = contactForce(x, both, inv, q, pr);
-		V.a[c] = f.x, V.b[c] = f.y;
+		V.first[c] = f.x, V.second[c] = f.y;
 		t[c]   = V.arm[c] * both.shear;
 		if (account) t[n + c] = -pr * x.x, t[2 * n + c] = -pr * x.y, t[3 * n + c] = q * x.x, t[4 * n + c] = q * x.y;
 	}
@@ -163,22 +164,22 @@ void contactReciprocals(const Store& S, Contacts& C)
 double contactVolumes(const Store& S, Contacts& C, VolumeRule rule, ContactScratch& out, size_t& closest)
 {
 	withRule(rule, [&](auto r) { volumeTerms<r.value>(S, C); });
-	addRows<1>(C, { C.a.data() }, { out.sum.data() });
+	addRows<1>(C, { C.first.data() }, { out.sum.data() });
 	const long    n       = long(C.size());
-	const double* b       = C.b.data();
+	const double* b       = C.second.data();
 	double        nearest = 1e300;
 #pragma omp simd reduction(min : nearest)
 	for (long c = 0; c < n; c++)
 		nearest = min(nearest, b[c]);
-	closest = nearest < deepestContact ? size_t(std::find(C.b.begin(), C.b.end(), nearest) - C.b.begin()) : 0;
+	closest = nearest < deepestContact ? size_t(std::find(C.second.begin(), C.second.end(), nearest) - C.second.begin()) : 0;
 	return nearest;
 }
 
 double contactTrial(const Store& S, Contacts& C, double dt, ContactScratch& out, bool account)
 {
 	const double speed2 = account ? trial<true>(S, C, dt) : trial<false>(S, C, dt);
-	if (!account) addRows<1>(C, { C.a.data() }, { out.square.data() });
-	else addRows<2>(C, { C.a.data(), C.press.data() }, { out.square.data(), out.old.data() });
+	if (!account) addRows<1>(C, { C.first.data() }, { out.square.data() });
+	else addRows<2>(C, { C.first.data(), C.press.data() }, { out.square.data(), out.old.data() });
 	return speed2;
 }
 
@@ -186,7 +187,7 @@ void contactFriction(const Store& S, Contacts& C, const ContactScratch& in, Cont
 {
 	work ? friction<true>(S, C, in.scale.data()) : friction<false>(S, C, in.scale.data());
 	for (size_t c = 0; work && c < C.size(); c++)
-		work->friction += C.a[c], work->coupling += C.b[c], work->plastic += C.c[c];
+		work->friction += C.first[c], work->coupling += C.second[c], work->plastic += C.third[c];
 }
 
 // (6) of both sides, each with its own rest distance.
@@ -201,9 +202,9 @@ void contactForces(Contacts& C, ContactScratch& out, bool account)
 	out.terms.resize(account ? n * 5 : n);
 	double* t = out.terms.data();
 	account ? forces<true>(C, t) : forces<false>(C, t);
-	if (!account) addRows<3>(C, { C.a.data(), C.b.data(), t }, { out.fx.data(), out.fy.data(), out.torque.data() });
+	if (!account) addRows<3>(C, { C.first.data(), C.second.data(), t }, { out.fx.data(), out.fy.data(), out.torque.data() });
 	else
-		addRows<7>(C, { C.a.data(), C.b.data(), t, t + n, t + 2 * n, t + 3 * n, t + 4 * n },
+		addRows<7>(C, { C.first.data(), C.second.data(), t, t + n, t + 2 * n, t + 3 * n, t + 4 * n },
 		           { out.fx.data(), out.fy.data(), out.torque.data(), out.volX.data(), out.volY.data(), out.visX.data(), out.visY.data() });
 }
 }

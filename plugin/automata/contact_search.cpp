@@ -99,7 +99,8 @@ namespace {
 					return;
 				}
 		for (int k = 0; k < nLinks; k++)
-			if (hasHeld(S.flags[i], k) && !holds(S.flags[i], k) && S.neighbour[linkSlot(i, k)] == j) s = S.s[linkSlot(i, k)], tau = S.tau[linkSlot(i, k)];
+			if (hasHeld(S.flags[i], k) && !holds(S.flags[i], k) && S.neighbour[linkSlot(i, k)] == j)
+				s = S.s[linkSlot(i, k)], tau = S.tau[linkSlot(i, k)];
 	}
 	/// What a pair of species has in common.
 	struct PairConstants {
@@ -125,6 +126,36 @@ namespace {
 		C.d[c]                 = p.d;
 		C.rest[c]              = restAtStart(C.d[c], S.distance2(i, j));
 		C.arm[c] = p.arm, C.twoG[c] = p.twoG, C.friction[c] = p.friction, C.viscLinear[c] = p.viscLinear, C.viscQuadratic[c] = p.viscQuadratic;
+	}
+	/// Rows of some of the owners.
+	struct RowPart {
+		std::vector<int32_t> owner, other, rowOwner, rowSize;
+	};
+	/// Contacts of these automata in one part per thread.
+	std::vector<RowPart> findRows(const Store& S, const CellGrid& grid, const std::vector<int32_t>& who, double skin, int threads)
+	{
+		std::vector<RowPart> parts(threads);
+		const long        n = long(who.size());
+#pragma omp parallel for schedule(static, 1) num_threads(threads)
+		for (int t = 0; t < threads; t++) {
+			RowPart&             P = parts[t];
+			std::vector<int32_t> row;
+			for (long q = n * t / threads; q < n * (t + 1) / threads; q++) {
+				const int32_t i  = who[q];
+				row.clear();
+				around(S, grid, i, skin, [&](int32_t j) {
+					if (j != i && touching(S, i, j) && !linked(S, i, j)) row.push_back(j);
+					return false;
+				});
+				if (row.empty()) continue;
+				std::sort(row.begin(), row.end(), [&](int32_t a, int32_t b) { return S.id[a] < S.id[b]; });
+				P.rowOwner.push_back(i);
+				P.rowSize.push_back(int32_t(row.size()));
+				P.owner.insert(P.owner.end(), row.size(), i);
+				P.other.insert(P.other.end(), row.begin(), row.end());
+			}
+		}
+		return parts;
 	}
 }
 
@@ -152,31 +183,8 @@ void searchContacts(Store& S, Contacts& C, double skin, int threads)
 		for (size_t r = 0; r < old.rows(); r++)
 			oldRow[old.rowOwner[r]] = int32_t(r);
 	}
-	struct Part {
-		std::vector<int32_t> owner, other, rowOwner, rowSize;
-	};
-	std::vector<Part> parts(threads);
-	const long        n = long(who.size());
-#pragma omp parallel for schedule(static, 1) num_threads(threads)
-	for (int t = 0; t < threads; t++) {
-		Part&                P = parts[t];
-		std::vector<int32_t> row;
-		for (long q = n * t / threads; q < n * (t + 1) / threads; q++) {
-			const int32_t i  = who[q];
-			row.clear();
-			around(S, grid, i, skin, [&](int32_t j) {
-				if (j != i && touching(S, i, j) && !linked(S, i, j)) row.push_back(j);
-				return false;
-			});
-			if (row.empty()) continue;
-			std::sort(row.begin(), row.end(), [&](int32_t a, int32_t b) { return S.id[a] < S.id[b]; });
-			P.rowOwner.push_back(i);
-			P.rowSize.push_back(int32_t(row.size()));
-			P.owner.insert(P.owner.end(), row.size(), i);
-			P.other.insert(P.other.end(), row.begin(), row.end());
-		}
-	}
-	for (auto& P : parts) {
+	const auto parts = findRows(S, grid, who, skin, threads);
+	for (const RowPart& P : parts) {
 		C.owner.insert(C.owner.end(), P.owner.begin(), P.owner.end());
 		C.other.insert(C.other.end(), P.other.begin(), P.other.end());
 		C.rowOwner.insert(C.rowOwner.end(), P.rowOwner.begin(), P.rowOwner.end());
@@ -184,10 +192,7 @@ void searchContacts(Store& S, Contacts& C, double skin, int threads)
 			C.rowBegin.push_back(C.rowBegin.back() + s);
 	}
 	const size_t m = C.size();
-	for (auto v : { &C.s, &C.tau, &C.rest, &C.d, &C.twoG, &C.friction, &C.viscLinear, &C.viscQuadratic, &C.arm })
-		v->assign(m, 0.);
-	C.sizeScratch();
-	C.reverse.assign(m, 0);
+	C.eachArray([&](auto& v, Presence) { v.resize(m); });
 	const auto           table = pairConstants(S);
 	std::vector<int32_t> rowOf(S.size(), -1);
 	for (size_t r = 0; r < C.rows(); r++)

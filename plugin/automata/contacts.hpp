@@ -20,7 +20,8 @@ void searchContacts(Store& S, Contacts& C, double skin, int threads);
 void contactReciprocals(const Store& S, Contacts& C);
 /// Geometry of this step and volume terms: fills scratch.sum. Returns (r/d)^2 of the closest contact; closest: its place in the list when it is too deep.
 double contactVolumes(const Store& S, Contacts& C, VolumeRule rule, ContactScratch& out, size_t& closest);
-/// Trial stresses; fills scratch.square, and for the account scratch.old, the products of old and trial stresses. Returns the largest relative speed squared [m2/s2] of listed pairs.
+/// Trial stresses; fills scratch.square, and for the account scratch.old, the products of old and trial stresses. Returns the largest relative speed squared
+/// [m2/s2] of listed pairs.
 double contactTrial(const Store& S, Contacts& C, double dt, ContactScratch& out, bool account);
 /// Pressure of the pairs that push, from the volumes after the density pass.
 void contactPressure(const Store& S, Contacts& C, VolumeRule rule);

@@ -5,11 +5,15 @@
 
 namespace mca::automata {
 namespace {
-	/// Places of the stresses of link k at its other ends: the opposite plane of their blocks.
-	MCA_INLINE void reverseSlots(const int32_t* j, int k, int32_t* to)
+	/// Stresses of link k at its other ends j: in the opposite plane of their blocks.
+	MCA_INLINE Pair<v8> stressesOfOthers(const double* s, const double* tau, const int32_t* j, int k)
 	{
-		for (int l = 0; l < lanes; l++)
-			to[l] = j[l] + int32_t(uint32_t(j[l]) / blockSize) * ((nLinks - 1) * blockSize) + Lattice::opposite(k) * blockSize;
+		v8 normal {}, shear {};
+		for (int l = 0; l < lanes; l++) {
+			const int32_t at = j[l] + int32_t(uint32_t(j[l]) / blockSize) * ((nLinks - 1) * blockSize) + Lattice::opposite(k) * blockSize;
+			normal[l] = s[at], shear[l] = tau[at];
+		}
+		return { normal, shear };
 	}
 	/// Per lane: (12) with the coefficients of the pair.
 	MCA_INLINE v8 viscosityMixed(const BlockView& V, const Store& S, const int32_t* j, v8 along, v8 invR2, v8 dij, v8 w)
@@ -38,20 +42,16 @@ namespace {
 #pragma GCC unroll 6
 			for (int k = 0; k < nLinks; k++) {
 				const int32_t* j = V.others(k, g);
-				int32_t        back[lanes];
-				reverseSlots(j, k, back);
-				const Motion other = gatherMotion(V.node, j);
-				v8           normal {}, shear {};
-				for (int l = 0; l < lanes; l++)
-					normal[l] = s[back[l]], shear[l] = tau[back[l]];
-				const Pair<v8> theirs { normal, shear };
-				const Vec<v8> r   = other.position - x;
+				const Motion   other  = gatherMotion(V.node, j);
+				const Pair<v8> theirs = stressesOfOthers(s, tau, j, k);
+				const Vec<v8>  r      = other.position - x;
 				v8            dij = splat(d);
 				if (mixed)
 					for (int l = 0; l < lanes; l++)
 						dij[l] = 0.5 * (d + V.diameterOfAll[j[l]]);
 				const m8       on    = holding(bits, k);
-				const v8       r2    = choose<intact>(on, dot(r, r), dij * dij), w = choose<intact>(on, weights<intact>(bits, k), splat(0.)), invR2 = 1. / r2;
+				const v8       w = choose<intact>(on, weights<intact>(bits, k), splat(0.));
+				const v8       r2 = choose<intact>(on, dot(r, r), dij * dij), invR2 = 1. / r2;
 				const v8       area  = pairArea(w, dij);
 				const Pair<v8> mine  = V.stress(k, g), both { area * (mine.normal + theirs.normal), area * (mine.shear + theirs.shear) };
 				Vec<v8>        press; // the pressures push i by its negative
@@ -65,7 +65,8 @@ namespace {
 				v8 along = both.normal * invR2;
 				if (viscous) {
 					const v8 closing = dot(r, other.velocity - v);
-					const v8 q       = mixed ? viscosityMixed(V, S, j, closing, invR2, dij, w) : w * viscousCoefficient(closing, invR2, own.linear, own.quadratic, Lattice::width(d));
+					const v8 q = mixed ? viscosityMixed(V, S, j, closing, invR2, dij, w)
+					                   : w * viscousCoefficient(closing, invR2, own.linear, own.quadratic, Lattice::width(d));
 					along += q;
 					if (account) ofViscosity = { fma(q, r.x, ofViscosity.x), fma(q, r.y, ofViscosity.y) };
 				}
@@ -80,11 +81,14 @@ namespace {
 			}
 			store(V.fx + g, force.x), store(V.fy + g, force.y), store(V.torque + g, torque);
 			if (account)
-				store(E.volX + V.base + g, ofPressure.x), store(E.volY + V.base + g, ofPressure.y), store(E.visX + V.base + g, ofViscosity.x), store(E.visY + V.base + g, ofViscosity.y);
+				store(E.volX + V.base + g, ofPressure.x), store(E.volY + V.base + g, ofPressure.y), store(E.visX + V.base + g, ofViscosity.x),
+					store(E.visY + V.base + g, ofViscosity.y);
 		}
-		if (V.block.contact && E.contactFx)
-			for (int l = 0; l < blockSize; l++)
-				V.fx[l] += E.contactFx[V.base + l], V.fy[l] += E.contactFy[V.base + l], V.torque[l] += E.contactT[V.base + l];
+	}
+	void addContacts(const BlockView& V, const Extra& E)
+	{
+		for (int l = 0; l < blockSize; l++)
+			V.fx[l] += E.contactFx[V.base + l], V.fy[l] += E.contactFy[V.base + l], V.torque[l] += E.contactT[V.base + l];
 	}
 }
 
@@ -92,8 +96,10 @@ void forcePass(Store& S, size_t b, VolumeRule rule, const Extra& E)
 {
 	const BlockView V(S, b);
 	dispatch(rule, [&](auto r) {
-		choices([&](auto intact, auto mixed, auto viscous, auto account) { run<r.value, intact.value, mixed.value, viscous.value, account.value>(V, S, E); }, V.block.intact, V.block.mixed,
-		        V.material.viscosity.active() || V.block.mixed, E.volX != nullptr);
+		choices([&](auto intact, auto mixed, auto viscous,
+		            auto account) { run<r.value, intact.value, mixed.value, viscous.value, account.value>(V, S, E); },
+		        V.block.intact, V.block.mixed, V.material.viscosity.active() || V.block.mixed, E.volX != nullptr);
 	});
+	if (V.block.contact && E.contactFx) addContacts(V, E);
 }
 }

@@ -27,7 +27,8 @@ template <class F> void Solver::eachBreaking(F&& f) const
 			for (int k = 0; k < nLinks; k++) {
 				if (!holds(S.flags[i], k)) continue;
 				const size_t j = S.neighbour[linkSlot(i, k)];
-				if (mca::breaks(m.fracture, end(i, k), end(j, Lattice::opposite(k)), S.distance2(i, j), S.restDistance(i, j)) && f(i, k)) return;
+				if (mca::breaks(m.fracture, end(i, k), end(j, Lattice::opposite(k)), S.distance2(i, j), S.restDistance(i, j)) && f(i, k))
+					return;
 			}
 		}
 	}

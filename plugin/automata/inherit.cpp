@@ -56,11 +56,50 @@ void Solver::inheritLinks(const Solver& old)
 	}
 }
 
+/// Tied automata keep their places in the order of tie().
+void Solver::inheritTied(const Solver& old)
+{
+	Store&       S = store;
+	const Store& O = old.store;
+	for (int32_t o : old.tied) {
+		const int64_t i = indexIn(old, O.id[o]) < 0 ? -1 : indexOf(O.id[o]);
+		if (i < 0) throw Error("automaton " + std::to_string(O.id[o]) + " is tied to a grid; it cannot be erased.");
+		S.flags[i] |= tiedBit;
+		S.perMassX[i] = O.perMassX[o], S.perMassY[i] = O.perMassY[o], S.perInertia[i] = O.perInertia[o];
+		tied.push_back(int32_t(i));
+	}
+	tiedVx = old.tiedVx, tiedVy = old.tiedVy, tiedW = old.tiedW;
+}
+
+/// Old contacts bring their stresses along through the search.
+void Solver::inheritContacts(const Solver& old)
+{
+	const Store& O = old.store;
+	for (size_t r = 0; r < old.contacts.rows(); r++) {
+		const int32_t id = O.id[old.contacts.rowOwner[r]];
+		const int64_t i  = indexIn(old, id) < 0 ? -1 : indexOf(id);
+		if (i < 0) continue;
+		const size_t first = contacts.size();
+		for (int32_t c = old.contacts.rowBegin[r]; c < old.contacts.rowBegin[r + 1]; c++) {
+			const int32_t mate = O.id[old.contacts.other[c]];
+			const int64_t j    = indexIn(old, mate) < 0 ? -1 : indexOf(mate);
+			if (j < 0) continue;
+			contacts.owner.push_back(int32_t(i)), contacts.other.push_back(int32_t(j));
+			contacts.s.push_back(old.contacts.s[c]), contacts.tau.push_back(old.contacts.tau[c]), contacts.rest.push_back(old.contacts.rest[c]),
+				contacts.twoG.push_back(old.contacts.twoG[c]);
+		}
+		if (contacts.size() == first) continue;
+		if (contacts.rowBegin.empty()) contacts.rowBegin.push_back(0);
+		contacts.rowOwner.push_back(int32_t(i)), contacts.rowBegin.push_back(int32_t(contacts.size()));
+	}
+}
+
 void Solver::inheritState(const Solver& old)
 {
 	Store&       S = store;
 	const Store& O = old.store;
-	sums = old.sums, counters = old.counters, time = old.time, lastDt = old.lastDt, lastMove = old.lastMove, lastSort = old.lastSort, dtLimit = old.dtLimit, filterTime = old.filterTime;
+	sums = old.sums, counters = old.counters, time = old.time, lastDt = old.lastDt, lastMove = old.lastMove, lastSort = old.lastSort, dtLimit = old.dtLimit,
+	filterTime = old.filterTime;
 	for (size_t i = 0; i < S.size(); i++) {
 		const int64_t o = S.id[i] < 0 ? -1 : indexIn(old, S.id[i]);
 		if (o < 0) continue;
@@ -77,33 +116,11 @@ void Solver::inheritState(const Solver& old)
 		// the volume goes on from where it was (the change over the last step is lost: J was taken before the last move)
 		if (options.volumeRule == VolumeRule::affine && S.factor[i] == 0.) S.factor[i] = 1.;
 		keepVolume(i, S.J[i]);
-		if (options.volumeRule != VolumeRule::affine && S.flags[i] & linkBits && O.blocks[size_t(o) / blockSize].contact) S.rest[i] += old.contactSum(size_t(o)); // its contacts come back with the search
+		if (options.volumeRule != VolumeRule::affine && S.flags[i] & linkBits && O.blocks[size_t(o) / blockSize].contact)
+			S.rest[i] += old.contactSum(size_t(o)); // its contacts come back with the search
 	}
-	for (int32_t o : old.tied) { // tied ones keep their places in the order of tie()
-		const int64_t i = indexIn(old, O.id[o]) < 0 ? -1 : indexOf(O.id[o]);
-		if (i < 0) throw Error("automaton " + std::to_string(O.id[o]) + " is tied to a grid; it cannot be erased.");
-		S.flags[i] |= tiedBit;
-		S.ax[i] = O.ax[o], S.ay[i] = O.ay[o], S.ar[i] = O.ar[o];
-		tied.push_back(int32_t(i));
-	}
-	tiedVx = old.tiedVx, tiedVy = old.tiedVy, tiedW = old.tiedW;
-	// old contacts bring their stresses along through the search
-	for (size_t r = 0; r < old.contacts.rows(); r++) {
-		const int32_t id = O.id[old.contacts.rowOwner[r]];
-		const int64_t i  = indexIn(old, id) < 0 ? -1 : indexOf(id);
-		if (i < 0) continue;
-		const size_t first = contacts.size();
-		for (int32_t c = old.contacts.rowBegin[r]; c < old.contacts.rowBegin[r + 1]; c++) {
-			const int32_t mate = O.id[old.contacts.other[c]];
-			const int64_t j    = indexIn(old, mate) < 0 ? -1 : indexOf(mate);
-			if (j < 0) continue;
-			contacts.owner.push_back(int32_t(i)), contacts.other.push_back(int32_t(j));
-			contacts.s.push_back(old.contacts.s[c]), contacts.tau.push_back(old.contacts.tau[c]), contacts.rest.push_back(old.contacts.rest[c]), contacts.twoG.push_back(old.contacts.twoG[c]);
-		}
-		if (contacts.size() == first) continue;
-		if (contacts.rowBegin.empty()) contacts.rowBegin.push_back(0);
-		contacts.rowOwner.push_back(int32_t(i)), contacts.rowBegin.push_back(int32_t(contacts.size()));
-	}
+	inheritTied(old);
+	inheritContacts(old);
 	for (auto& B : S.blocks)
 		B.moving = B.awake = true;
 	topologyChanged = true;

@@ -15,11 +15,15 @@ namespace {
 	struct Outside {
 		double x, y, torque;
 	};
-	Outside outside(const Store& S, size_t i) { return S.ex.empty() ? Outside { 0., 0., 0. } : Outside { S.ex[i], S.ey[i], S.et[i] }; }
+	Outside outside(const Store& S, size_t i)
+	{
+		return S.outsideX.empty() ? Outside { 0., 0., 0. } : Outside { S.outsideX[i], S.outsideY[i], S.outsideTorque[i] };
+	}
 	bool    finite(double x, double y, double torque) { return std::fabs(x) + std::fabs(y) + std::fabs(torque) < largestForce; }
 
 	/// One direction of the kick. force, outside (may be null), damping (may be null: none): of the lanes; inverse: 1/mass or 0.
-	MCA_INLINE void kickLanes(const double* v, const double* force, const double* outside, const double* damping, const double* inverse, double kick, double* to)
+	MCA_INLINE void
+	kickLanes(const double* v, const double* force, const double* outside, const double* damping, const double* inverse, double kick, double* to)
 	{
 #pragma omp simd
 		for (int l = 0; l < blockSize; l++) {
@@ -32,9 +36,9 @@ namespace {
 	void kickBlock(const Store& S, size_t base, double kick, Kicked& to)
 	{
 		const auto given = [&](const std::vector<double>& v) { return v.empty() ? nullptr : v.data() + base; };
-		kickLanes(&S.vx[base], &S.fx[base], given(S.ex), given(S.dampX), &S.ax[base], kick, to.vx);
-		kickLanes(&S.vy[base], &S.fy[base], given(S.ey), given(S.dampY), &S.ay[base], kick, to.vy);
-		kickLanes(&S.omega[base], &S.torque[base], given(S.et), nullptr, &S.ar[base], kick, to.omega);
+		kickLanes(&S.vx[base], &S.fx[base], given(S.outsideX), given(S.dampX), &S.perMassX[base], kick, to.vx);
+		kickLanes(&S.vy[base], &S.fy[base], given(S.outsideY), given(S.dampY), &S.perMassY[base], kick, to.vy);
+		kickLanes(&S.omega[base], &S.torque[base], given(S.outsideTorque), nullptr, &S.perInertia[base], kick, to.omega);
 	}
 	/// New velocities, and positions by them; returns whether anything moves.
 	bool driftBlock(Store& S, size_t base, double dt, const Kicked& to)
@@ -57,7 +61,7 @@ namespace {
 void Solver::checkForces()
 {
 	const Store& S = store;
-	const bool ext = !S.ex.empty();
+	const bool ext = !S.outsideX.empty();
 	for (int32_t b : awake)
 		results[b].bad = -1;
 	eachAwake([&](size_t b) {
@@ -66,7 +70,7 @@ void Solver::checkForces()
 		for (int l = 0; l < blockSize; l++)
 			bad += finite(S.fx[base + l], S.fy[base + l], S.torque[base + l]) ? 0 : 1;
 		for (int l = 0; ext && l < blockSize; l++)
-			bad += finite(S.ex[base + l], S.ey[base + l], S.et[base + l]) ? 0 : 1;
+			bad += finite(S.outsideX[base + l], S.outsideY[base + l], S.outsideTorque[base + l]) ? 0 : 1;
 		if (bad) results[b].bad = int64_t(base);
 	});
 	for (int32_t b : awake)
@@ -75,7 +79,8 @@ void Solver::checkForces()
 			const Outside e = outside(S, i);
 			if (finite(S.fx[i], S.fy[i], S.torque[i]) && finite(e.x, e.y, e.torque)) continue;
 			std::ostringstream s;
-			s << "automaton " << S.id[i] << ": force (" << S.fx[i] << ", " << S.fy[i] << ") N/m, from outside (" << e.x << ", " << e.y << ") N/m, in step " << counters.steps
+			s << "automaton " << S.id[i] << ": force (" << S.fx[i] << ", " << S.fy[i] << ") N/m, from outside (" << e.x << ", " << e.y
+			  << ") N/m, in step " << counters.steps
 			  << " is not finite. Positions are those before the step; save and look, or use a smaller time step.";
 			throw Error(s.str());
 		}
@@ -86,7 +91,8 @@ Solver::ForceShares Solver::sharesOf(size_t i) const
 {
 	const auto& a = accountForce;
 	ForceShares f { a.volX[i], a.volY[i], a.visX[i], a.visY[i] };
-	if (contacts.size() && store.blocks[i / blockSize].contact) f.volX += scratch.volX[i], f.volY += scratch.volY[i], f.visX += scratch.visX[i], f.visY += scratch.visY[i];
+	if (contacts.size() && store.blocks[i / blockSize].contact)
+		f.volX += scratch.volX[i], f.volY += scratch.volY[i], f.visX += scratch.visX[i], f.visY += scratch.visY[i];
 	return f;
 }
 
@@ -108,14 +114,15 @@ void Solver::bookBlock(size_t b, double kick, double after, const double* newVx,
 		const double dX = damp ? S.dampX[i] : 0., dY = damp ? S.dampY[i] : 0.;
 		// what the outside adds: given forces, and the reaction that keeps blocked degrees of freedom at their velocity
 		const double Fx = S.fx[i] + o.x, Fy = S.fy[i] + o.y, T = S.torque[i] + o.torque;
-		const double ex = S.ax[i] > 0 ? Fx - S.fx[i] : -S.fx[i], ey = S.ay[i] > 0 ? Fy - S.fy[i] : -S.fy[i], et = S.ar[i] > 0 ? T - S.torque[i] : -S.torque[i];
+		const double ex = S.perMassX[i] > 0 ? Fx - S.fx[i] : -S.fx[i], ey = S.perMassY[i] > 0 ? Fy - S.fy[i] : -S.fy[i],
+			     et = S.perInertia[i] > 0 ? T - S.torque[i] : -S.torque[i];
 		p.external += ex * mx + ey * my + et * mw;
-		const double dampedX = S.ax[i] > 0 ? dX * mx : 0., dampedY = S.ay[i] > 0 ? dY * my : 0.;
+		const double dampedX = S.perMassX[i] > 0 ? dX * mx : 0., dampedY = S.perMassY[i] > 0 ? dY * my : 0.;
 		p.boundary += (dampedX * mx + dampedY * my) / kick;
 		p.impulseX += ex * kick - dampedX, p.impulseY += ey * kick - dampedY;
 		const double cx = vx - after * (vx - S.vx[i]), cy = vy - after * (vy - S.vy[i]), cw = w - after * (w - S.omega[i]);
 		if (!(S.flags[i] & tiedBit)) p.centre += 0.5 * S.mass[i] * (cx * cx + cy * cy - vx * vx - vy * vy);
-		if (!(S.flags[i] & tiedBit) || S.ar[i] > 0) p.centre += 0.5 * S.inertia[i] * (cw * cw - w * w);
+		if (!(S.flags[i] & tiedBit) || S.perInertia[i] > 0) p.centre += 0.5 * S.inertia[i] * (cw * cw - w * w);
 	}
 	stepWorks[b] = p;
 }
@@ -127,14 +134,17 @@ void Solver::bookStep(double kick, double after)
 	const double external = sums.external, boundary = sums.boundary, viscous = sums.bookedViscous;
 	sums.centre           = 0;
 	for (auto& p : stepWorks)
-		sums.centre += p.centre, sums.bookedVolumetric += p.volumetric, sums.bookedViscous += p.viscous, sums.bookedDeviatoric += p.deviatoric, sums.external += p.external, sums.boundary += p.boundary,
-		        sums.impulseX += p.impulseX, sums.impulseY += p.impulseY;
+		sums.centre += p.centre, sums.bookedVolumetric += p.volumetric, sums.bookedViscous += p.viscous, sums.bookedDeviatoric += p.deviatoric,
+			sums.external += p.external, sums.boundary += p.boundary, sums.impulseX += p.impulseX, sums.impulseY += p.impulseY;
 	for (size_t t = 0; t < tied.size(); t++) { // their velocity had been set before: the mean is that of old and new
 		const size_t      i = tied[t];
 		const ForceShares f = sharesOf(i);
-		const double mx = 0.5 * (tiedVx[t] - S.vx[i]) * kick, my = 0.5 * (tiedVy[t] - S.vy[i]) * kick, mw = S.ar[i] > 0 ? 0. : 0.5 * (tiedW[t] - S.omega[i]) * kick; // a free spin is booked above
-		const double volumetric = f.volX * mx + f.volY * my, viscosity = f.visX * mx + f.visY * my, all = S.fx[i] * mx + S.fy[i] * my + S.torque[i] * mw;
-		sums.bookedVolumetric += volumetric, sums.bookedViscous += viscosity, sums.bookedDeviatoric += all - volumetric - viscosity, sums.external -= all;
+		const double      mx = 0.5 * (tiedVx[t] - S.vx[i]) * kick, my = 0.5 * (tiedVy[t] - S.vy[i]) * kick,
+			     mw         = S.perInertia[i] > 0 ? 0. : 0.5 * (tiedW[t] - S.omega[i]) * kick; // a free spin is booked above
+		const double volumetric = f.volX * mx + f.volY * my, viscosity = f.visX * mx + f.visY * my,
+			     all = S.fx[i] * mx + S.fy[i] * my + S.torque[i] * mw;
+		sums.bookedVolumetric += volumetric, sums.bookedViscous += viscosity, sums.bookedDeviatoric += all - volumetric - viscosity,
+			sums.external -= all;
 	}
 	sums.viscous -= sums.bookedViscous - viscous;
 	sums.centre += after * (sums.external - external - sums.boundary + boundary + sums.bookedViscous - viscous);

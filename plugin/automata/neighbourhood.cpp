@@ -72,7 +72,8 @@ void Solver::search()
 	}
 	if (counters.steps >= lastSort + 2000) sortInSpace();
 	for (int32_t i : contacts.rowOwner) // entries of owners that may have none any more
-		for (auto v : { &scratch.sum, &scratch.square, &scratch.old, &scratch.scale, &scratch.fx, &scratch.fy, &scratch.torque, &scratch.volX, &scratch.volY, &scratch.visX, &scratch.visY })
+		for (auto v : { &scratch.sum, &scratch.square, &scratch.old, &scratch.scale, &scratch.fx, &scratch.fy, &scratch.torque, &scratch.volX,
+		                &scratch.volY, &scratch.visX, &scratch.visY })
 			if (!v->empty()) (*v)[i] = 0.;
 	searchContacts(S, contacts, options.skin, std::max(1, omp_get_max_threads()));
 	if (contacts.size()) {

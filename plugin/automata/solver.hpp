@@ -51,7 +51,10 @@ struct Account {
 	/// kinetic energy gained minus all work booked: round-off
 	double bookedError() const { return kinetic - kineticStart - bookedVolumetric - bookedDeviatoric - bookedViscous - external + boundary; }
 	/// independent sum at the time of the stresses
-	double total() const { return kinetic + volumetric + deviatoric + plastic + viscous + friction + fracture + coupling + boundary + left - external + centre; }
+	double total() const
+	{
+		return kinetic + volumetric + deviatoric + plastic + viscous + friction + fracture + coupling + boundary + left - external + centre;
+	}
 };
 
 struct Counters {
@@ -133,11 +136,14 @@ private:
 		double  angle[nLinks];
 	};
 	void   makeLinks(const Solver* old);
+	void   halveLinks(size_t i);
 	void   placeLinks(const std::vector<Near>& near, const Solver* old);
 	/// Place of a number in the old solver, -1 when that was another automaton or there is none.
 	int64_t indexIn(const Solver& old, int32_t id) const { return size_t(id) < isNew.size() && isNew[size_t(id)] ? -1 : old.indexOf(id); }
 	void   inheritLinks(const Solver& old);
 	void   inheritState(const Solver& old);
+	void   inheritTied(const Solver& old);
+	void   inheritContacts(const Solver& old);
 	void   makeAdjacency();
 	void   classify();
 	void   sortInSpace();
@@ -176,6 +182,7 @@ private:
 	double deviatorEnergyOf(size_t i) const; ///< of links and szz [J/m]
 	template <class F> void eachAwake(F&& f);
 	template <class F> void archive(F&& f);
+	static uint64_t         layout(); ///< of the saved state: follows from the names and kinds of what archive() lists
 	void                    checkState() const; ///< after loading: throws Error unless all fits together
 	[[noreturn]] void       overlapError(size_t i, size_t j, double ratio) const;
 

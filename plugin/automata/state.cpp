@@ -11,12 +11,27 @@
 
 namespace mca::automata {
 namespace {
-	constexpr uint64_t magic = 0x4d43413041303033ULL ^ lawsVersion(); // layout of this file; change it with every change of the arrays
-
 	[[noreturn]] void damaged(const char* what) { throw Error(std::string("the saved state of the automata is damaged: ") + what + "."); }
 
+	/// The kinds and names of all that is saved, as one number: a state belongs to this plugin when it has the same.
+	struct Layout {
+		uint64_t hash = lawsVersion();
+		void     raw(const void*, size_t) { }
+		void     names(const char* text) { hash = nameHash(text, hash); }
+		void     size(size_t n) { hash = (hash ^ n) * 1099511628211ULL; }
+		template <class T> void number(T& v) { size(sizeof v); }
+		void                    truth(bool&) { size(1); }
+		template <class T> void choice(T&, int n) { size(size_t(n)); }
+		/// one entry, so that those of structs are seen
+		template <class T> void resize(std::vector<T>& v, size_t)
+		{
+			size(sizeof(T));
+			v.resize(1);
+		}
+	};
 	struct Writer {
 		std::string out;
+		void        names(const char*) { }
 		void        raw(const void* p, size_t n) { out.append(static_cast<const char*>(p), n); }
 		template <class T> void number(T& v) { raw(&v, sizeof v); }
 		void        truth(bool& v) { out.push_back(v ? 1 : 0); }
@@ -30,6 +45,7 @@ namespace {
 	struct Reader {
 		const std::string& in;
 		size_t             at = 0;
+		void               names(const char*) { }
 		void               raw(void* p, size_t n)
 		{
 			if (n > in.size() - at) damaged("it ends too early");
@@ -65,6 +81,7 @@ namespace {
 		}
 	};
 	// truth values and choices one by one: in raw bytes they could be anything
+#define MCA_EACH(...) each(#__VA_ARGS__, __VA_ARGS__)
 	template <class F> struct Fields {
 		F& f;
 		template <class T> std::enable_if_t<std::is_arithmetic_v<T>> operator()(T& v)
@@ -75,11 +92,11 @@ namespace {
 		void operator()(YieldKind& v) { f.choice(v, yieldKinds); }
 		void operator()(EosKind& v) { f.choice(v, eosKinds); }
 		void operator()(VolumeRule& v) { f.choice(v, 3); }
-		void operator()(Block& b) { each(b.species, b.count, b.intact, b.mixed, b.contact, b.awake, b.moving, b.ringsAwake); }
-		void operator()(Species& s) { each(s.material, s.d); }
+		void operator()(Block& b) { MCA_EACH(b.species, b.count, b.intact, b.mixed, b.contact, b.awake, b.moving, b.ringsAwake); }
+		void operator()(Species& s) { MCA_EACH(s.material, s.d); }
 		void operator()(Material& m) { eachConstant(m, *this); }
-		void operator()(BlockResult& r) { each(r.stiffest, r.closing, r.widest, r.nearest, r.criterion, r.clamped, r.bad); }
-		void operator()(Options& o) { each(o.volumeRule, o.linkFactor, o.skin, o.sleeping, o.account, o.contacts, o.volumeFilter, o.fullLinks); }
+		void operator()(BlockResult& r) { MCA_EACH(r.stiffest, r.closing, r.widest, r.nearest, r.criterion, r.clamped, r.bad); }
+		void operator()(Options& o) { MCA_EACH(o.volumeRule, o.linkFactor, o.skin, o.sleeping, o.account, o.contacts, o.volumeFilter, o.fullLinks); }
 		void operator()(Counters& c) { f.number(c); }
 		void operator()(Account& a) { f.number(a); }
 		template <class T> void operator()(std::vector<T>& v)
@@ -91,7 +108,15 @@ namespace {
 				for (T& e : v)
 					(*this)(e);
 		}
-		template <class... T> void each(T&... v) { ((*this)(v), ...); }
+		template <class... T> void each(const char* names, T&... v)
+		{
+			f.names(names);
+			((*this)(v), ...);
+		}
+		template <class T> void operator()(std::vector<T>& v, Presence p)
+		{
+			if (p != Presence::scratch) (*this)(v);
+		}
 	};
 	static_assert(sizeof(Account) % sizeof(double) == 0 && sizeof(Counters) % sizeof(double) == 0, "numbers only, no gaps");
 }
@@ -99,19 +124,35 @@ namespace {
 template <class F> void Solver::archive(F&& to)
 {
 	Fields<std::remove_reference_t<F>> f { to };
+	to.names(automatonFieldNames), to.names(contactFieldNames);
 	store.eachArray(f);
-	f.each(store.neighbour, store.s, store.tau, store.blocks, store.species, store.materials);
-	contacts.each(f);
-	for (auto v : { &scratch.sum, &scratch.square, &scratch.old, &scratch.scale, &scratch.fx, &scratch.fy, &scratch.torque, &scratch.volX, &scratch.volY, &scratch.visX, &scratch.visY,
-	                &accountForce.volX, &accountForce.volY, &accountForce.visX, &accountForce.visY, &searchX, &searchY, &tiedVx, &tiedVy, &tiedW })
-		f(*v);
-	f.each(place, exposed, adjacentBegin, adjacent, awake, tied, results, options, counters, time, lastDt, lastMove, dtLimit, contactSpeed2, topologyChanged, searchDue, sums, lastSort, filterTime, flows);
+	contacts.eachArray(f);
+	f.MCA_EACH(store.neighbour, store.s, store.tau, store.blocks, store.species, store.materials, contacts.rowOwner, contacts.rowBegin);
+	f.MCA_EACH(
+		scratch.sum, scratch.square, scratch.old, scratch.scale, scratch.fx, scratch.fy, scratch.torque, scratch.volX, scratch.volY, scratch.visX,
+		scratch.visY);
+	f.MCA_EACH(accountForce.volX, accountForce.volY, accountForce.visX, accountForce.visY, searchX, searchY, tiedVx, tiedVy, tiedW);
+	f.MCA_EACH(
+		place, exposed, adjacentBegin, adjacent, awake, tied, results, options, counters, time, lastDt, lastMove, dtLimit, contactSpeed2,
+		topologyChanged, searchDue, sums);
+	f.MCA_EACH(lastSort, filterTime, flows);
+}
+
+uint64_t Solver::layout()
+{
+	static const uint64_t version = [] {
+		Layout l;
+		Solver().archive(l);
+		return l.hash;
+	}();
+	return version;
 }
 
 std::string Solver::save() const
 {
-	Writer w;
-	w.raw(&magic, sizeof magic);
+	Writer         w;
+	const uint64_t version = layout();
+	w.raw(&version, sizeof version);
 	const_cast<Solver*>(this)->archive(w);
 	return std::move(w.out);
 }
@@ -119,9 +160,11 @@ std::string Solver::save() const
 void Solver::load(const std::string& bytes)
 {
 	Reader   r { bytes };
-	uint64_t kind = 0;
-	r.number(kind);
-	if (kind != magic) throw Error("the saved state of the automata has another layout: it is damaged, or another version of the plugin has written it and must load it.");
+	uint64_t version = 0;
+	r.number(version);
+	if (version != layout())
+		throw Error(
+			"the saved state of the automata has another layout: it is damaged, or another version of the plugin has written it and must load it.");
 	Solver fresh; // nothing of this solver changes unless all could be read
 	fresh.archive(r);
 	if (r.at != bytes.size()) damaged("bytes are left over");
@@ -150,8 +193,9 @@ std::vector<int> Solver::ids() const
 void Solver::checkOrder(const std::vector<int>& order) const
 {
 	if (order != ids())
-		throw Error("the list of bodies in the file (" + std::to_string(order.size()) + " ids) is not that of the saved automata (" + std::to_string(ids().size())
-		            + "): the file is damaged or was edited; bodies are added and erased after loading.");
+		throw Error(
+			"the list of bodies in the file (" + std::to_string(order.size()) + " ids) is not that of the saved automata ("
+			+ std::to_string(ids().size()) + "): the file is damaged or was edited; bodies are added and erased after loading.");
 }
 
 // Bodies come in any order and debris moves: entries that are near in space are brought near in memory. The order of each
@@ -175,7 +219,7 @@ void Solver::sortInSpace()
 		}
 	for (size_t i = 0; i < n; i++)
 		target[source[i]] = int32_t(i);
-	S.eachArray([&](auto& v) {
+	S.eachArray([&](auto& v, Presence) {
 		if (v.empty()) return;
 		auto old = v;
 		for (size_t i = 0; i < n; i++)
@@ -193,8 +237,8 @@ void Solver::sortInSpace()
 	for (auto v : { &contacts.owner, &contacts.other, &contacts.rowOwner, &tied })
 		for (auto& i : *v)
 			i = target[i];
-	for (auto v : { &scratch.sum, &scratch.square, &scratch.old, &scratch.scale, &scratch.fx, &scratch.fy, &scratch.torque, &scratch.volX, &scratch.volY, &scratch.visX, &scratch.visY,
-	                &accountForce.volX, &accountForce.volY, &accountForce.visX, &accountForce.visY })
+	for (auto v : { &scratch.sum, &scratch.square, &scratch.old, &scratch.scale, &scratch.fx, &scratch.fy, &scratch.torque, &scratch.volX, &scratch.volY,
+	                &scratch.visX, &scratch.visY, &accountForce.volX, &accountForce.volY, &accountForce.visX, &accountForce.visY })
 		if (!v->empty()) {
 			auto old = *v;
 			for (size_t i = 0; i < n; i++)

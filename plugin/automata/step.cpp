@@ -12,8 +12,9 @@ void Solver::overlapError(size_t i, size_t j, double ratio) const
 {
 	const Store&       S = store;
 	std::ostringstream s;
-	s << "automata " << S.id[i] << " at (" << S.x[i] << ", " << S.y[i] << ") m and " << S.id[j] << " at (" << S.x[j] << ", " << S.y[j] << ") m are " << ratio
-	  << " rest distances apart in step " << counters.steps << "; the least allowed is 0.5 (0.2 if linked). Remedy: a smaller time step, a smaller impact speed, or no overlap in the packing.";
+	s << "automata " << S.id[i] << " at (" << S.x[i] << ", " << S.y[i] << ") m and " << S.id[j] << " at (" << S.x[j] << ", " << S.y[j] << ") m are "
+	  << ratio << " rest distances apart in step " << counters.steps
+	  << "; the least allowed is 0.5 (0.2 if linked). Remedy: a smaller time step, a smaller impact speed, or no overlap in the packing.";
 	throw Error(s.str());
 }
 
@@ -43,7 +44,8 @@ void Solver::checkResults(double nearestContact, size_t closest)
 		if (results[b].nearest <= nearest)
 			for (int q = 0; q < nLinks * blockSize; q++) {
 				const size_t i = size_t(b) * blockSize + q % blockSize, j = S.neighbour[size_t(b) * nLinks * blockSize + q];
-				if (holds(S.flags[i], q / blockSize) && S.distance2(i, j) <= nearest * sqr(S.restDistance(i, j)) * 1.0001) overlapError(i, j, std::sqrt(nearest));
+				if (holds(S.flags[i], q / blockSize) && S.distance2(i, j) <= nearest * sqr(S.restDistance(i, j)) * 1.0001)
+					overlapError(i, j, std::sqrt(nearest));
 			}
 }
 
@@ -63,8 +65,8 @@ Extra Solver::extra()
 			v->resize(store.size(), 0.);
 	Extra X;
 	if (contacts.size())
-		X.contactSum = scratch.sum.data(), X.contactSq = scratch.square.data(), X.contactOld = scratch.old.data(), X.scale = scratch.scale.data(), X.contactFx = scratch.fx.data(),
-		X.contactFy = scratch.fy.data(), X.contactT = scratch.torque.data();
+		X.contactSum = scratch.sum.data(), X.contactSq = scratch.square.data(), X.contactOld = scratch.old.data(), X.scale = scratch.scale.data(),
+		X.contactFx = scratch.fx.data(), X.contactFy = scratch.fy.data(), X.contactT = scratch.torque.data();
 	if (!options.account) return X;
 	for (auto v : { &accountForce.volX, &accountForce.volY, &accountForce.visX, &accountForce.visY })
 		v->resize(store.size(), 0.);

@@ -6,6 +6,7 @@
 #include "../kernels/automaton/force.hpp"
 #include "../kernels/automaton/fracture.hpp"
 #include "../kernels/automaton/links.hpp"
+#include "fields.hpp"
 #include <algorithm>
 #include <cstdint>
 #include <vector>
@@ -16,6 +17,9 @@ constexpr int blockSize = 64;
 constexpr int nodeSize = 8, pushSize = 4; ///< numbers of the records that neighbours read
 /// place of link k of automaton i in the link arrays
 inline size_t linkSlot(size_t i, int k) { return ((i / blockSize) * nLinks + k) * blockSize + i % blockSize; }
+
+/// Whether an array of fields.hpp is there in every scene, and whether it is part of the saved state.
+enum class Presence { always, whenUsed, saved, scratch };
 
 struct Species {
 	int    material = 0;
@@ -34,25 +38,11 @@ struct Block {
 };
 
 struct Store {
-	// one entry per automaton; SI units per unit thickness
-	std::vector<double> x, y, vx, vy, omega, angle;      ///< position [m], velocity [m/s], spin [rad/s], turned angle [rad]
-	std::vector<double> mass, inertia;                   ///< [kg/m], [kg m]
-	std::vector<double> ax, ay, ar;                      ///< 1/mass, 1/mass, 1/inertia; zero where the degree of freedom is blocked
-	std::vector<double> diameter;                        ///< [m]
-	std::vector<double> cell, invN, rest;                ///< Omega0 [m2]; 1/N of the volume rule; its sum at rest [-]
-	std::vector<double> J, dTheta, P, h;                 ///< volume ratio, its last increment, pressure [Pa], pressure share of (6)
-	std::vector<double> factor;                            ///< affine rule: J of the links = factor det F; 0 = too few links to have a volume
-	std::vector<double> szz, eqps, temperature;          ///< [Pa], [-], [K]
-	std::vector<double> strength;                        ///< factor on the fracture criteria [-]
-	std::vector<double> criterion;                       ///< largest criterion / its limit [-]; a pair breaks at a mean of 1
-	std::vector<double> heat;                            ///< internal energy per mass, Mie-Grueneisen only [J/kg]
-	std::vector<double> fx, fy, torque;                  ///< force of the last computeForces() [N/m], [N]
-	std::vector<double> ex, ey, et;                      ///< external force and torque, empty when there is none
-	std::vector<double> dampX, dampY;                    ///< viscous boundary rho c A [kg/(m s)], empty when there is none
-	std::vector<int32_t> flags, id, group;               ///< Flag bits; caller's number; link group
-	std::vector<double> weight;                          ///< share of the full cell [-]
+#define MCA_ARRAY(name, type, presence, shown, text) std::vector<type> name;
+	MCA_AUTOMATON_FIELDS(MCA_ARRAY)
+#undef MCA_ARRAY
 	// links: nLinks planes per block
-	std::vector<int32_t> neighbour;                      ///< automaton at the other end, itself where there is none; there the same link is Lattice::opposite(k)
+	std::vector<int32_t> neighbour; ///< automaton at the other end, itself where there is none; there the same link is Lattice::opposite(k)
 	std::vector<double>  s, tau;                         ///< J times normal and shear pair stress of this side [Pa]
 	// records that neighbours read; rebuilt in every step, so not part of the saved state
 	std::vector<double>  node; ///< 8 per automaton: x, y, vx, vy, omega, dTheta, 0, 0
@@ -80,45 +70,57 @@ struct Store {
 	size_t size() const { return x.size(); }
 	int32_t speciesOf(size_t i) const { return blocks[i / blockSize].species; }
 	/// of the pair of this species with automaton j [Pa]; q = arm of this side / distance
-	double pairTwoG(int32_t mine, size_t j, double q) const { return seriesTwoG(materials[species[mine].material].G, materials[species[speciesOf(j)].material].G, q); }
-	PairViscosity pairViscosity(int32_t mine, size_t j) const { return viscosityOf(materials[species[mine].material], materials[species[speciesOf(j)].material]); }
+	double pairTwoG(int32_t mine, size_t j, double q) const
+	{
+		return seriesTwoG(materials[species[mine].material].G, materials[species[speciesOf(j)].material].G, q);
+	}
+	PairViscosity pairViscosity(int32_t mine, size_t j) const
+	{
+		return viscosityOf(materials[species[mine].material], materials[species[speciesOf(j)].material]);
+	}
 	const Material& materialOf(const Block& b) const { return materials[species[b.species].material]; }
 	const Material& materialOf(size_t i) const { return materials[species[speciesOf(i)].material]; }
 	double          distance2(size_t i, size_t j) const { return sqr(x[j] - x[i]) + sqr(y[j] - y[i]); } ///< [m2]
 	double          restDistance(size_t i, size_t j) const { return 0.5 * (diameter[i] + diameter[j]); } ///< [m]
 
-	/// f(name, vector) for every array with one entry per automaton; optional ones may be empty
+	/// f(array, presence) for every array with one entry per automaton
 	template <class F> void eachArray(F&& f)
 	{
-		f(factor), f(x), f(y), f(vx), f(vy), f(omega), f(angle), f(mass), f(inertia), f(ax), f(ay), f(ar), f(diameter), f(cell), f(invN), f(rest), f(J), f(dTheta), f(P), f(h);
-		f(szz), f(eqps), f(temperature), f(strength), f(criterion), f(heat), f(fx), f(fy), f(torque), f(ex), f(ey), f(et), f(dampX), f(dampY), f(weight);
-		f(flags), f(id), f(group);
+#define MCA_ARRAY(name, type, presence, shown, text) f(name, Presence::presence);
+		MCA_AUTOMATON_FIELDS(MCA_ARRAY)
+#undef MCA_ARRAY
+	}
+	/// f(name for scripts, array) for every array that McaEngine.field() shows
+	template <class F> void eachShown(F&& f) const
+	{
+#define MCA_ARRAY(name, type, presence, shown, text) \
+	if (*shown) f(shown, name);
+		MCA_AUTOMATON_FIELDS(MCA_ARRAY)
+#undef MCA_ARRAY
 	}
 };
 
 /// Half-contacts: every contact stands twice, once for each side, sorted by owner; rows of one owner are contiguous.
 struct Contacts {
-	std::vector<int32_t> owner, other, reverse; ///< automata; place of the other half
-	std::vector<double>  s, tau;                ///< as for links [Pa]
-	std::vector<double>  rest;                            ///< rest distance of this side: that of the two automata, or less when they came into contact already closer [m]
-	std::vector<double>  d, twoG, friction, viscLinear, viscQuadratic, arm; ///< constants of the pair; arm of the owner over the distance
-	std::vector<double>  perTwoG, perOwnG;      ///< 1/twoG, 1/G of the owner's material [1/Pa]; 0 where that is zero
-	std::vector<double>  a, b, c;               ///< scratch per half-contact
-	std::vector<double>  dx, dy, r2;            ///< vector from owner to other [m] and its square, of this step
-	std::vector<double>  pushing, touch;        ///< 1 where this side pushes, where any side does; else 0
-	std::vector<double>  along, press;          ///< (x_j-x_i).(v_j-v_i) [m2/s]; pressure force over the vector [N/m2]
+#define MCA_ARRAY(name, type, presence, text) std::vector<type> name;
+	MCA_CONTACT_FIELDS(MCA_ARRAY)
+#undef MCA_ARRAY
+	std::vector<int32_t> rowOwner, rowBegin; ///< rows: owner and first half-contact; rowBegin has one entry more
+	size_t               size() const { return owner.size(); }
+	size_t               rows() const { return rowOwner.size(); }
+	/// f(array, presence) for every array with one entry per half-contact
+	template <class F> void eachArray(F&& f)
+	{
+#define MCA_ARRAY(name, type, presence, text) f(name, Presence::presence);
+		MCA_CONTACT_FIELDS(MCA_ARRAY)
+#undef MCA_ARRAY
+	}
 	/// What a step fills anew; sized by the search.
 	void sizeScratch()
 	{
-		for (auto v : { &a, &b, &c, &dx, &dy, &r2, &pushing, &touch, &along, &press })
-			v->resize(size());
-	}
-	std::vector<int32_t> rowOwner, rowBegin;    ///< rows: owner and first half-contact; rowBegin has one entry more
-	size_t               size() const { return owner.size(); }
-	size_t               rows() const { return rowOwner.size(); }
-	template <class F> void each(F&& f)
-	{
-		f(owner), f(other), f(reverse), f(s), f(tau), f(rest), f(d), f(twoG), f(friction), f(viscLinear), f(viscQuadratic), f(arm), f(rowOwner), f(rowBegin);
+		eachArray([&](auto& v, Presence p) {
+			if (p == Presence::scratch) v.resize(size());
+		});
 	}
 };
 }

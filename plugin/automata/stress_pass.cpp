@@ -52,7 +52,9 @@ namespace {
 				sums.template add<account>(old, now, dth, weight, choose<intact>(on, weight, splat(0.)));
 			}
 			store(to.square + g, sums.square);
-			if (account) store(to.before + g, sums.squareBefore), store(to.both + g, sums.both), store(to.dilationBefore + g, sums.dilationBefore), store(to.dilationTrial + g, sums.dilationTrial);
+			if (account)
+				store(to.before + g, sums.squareBefore), store(to.both + g, sums.both), store(to.dilationBefore + g, sums.dilationBefore),
+					store(to.dilationTrial + g, sums.dilationTrial);
 		}
 	}
 
@@ -71,7 +73,8 @@ namespace {
 		if (!(over > 0.)) return;
 #pragma omp simd
 		for (int l = 0; l < lanes; l++) {
-			const Return r = radialReturn<kind>(yield, StaticYield { stress[l], slope[l] }, to.trial[g + l], V.eqps[g + l], V.temperature[g + l], threeG, dt);
+			const Return r = radialReturn<kind>(
+				yield, StaticYield { stress[l], slope[l] }, to.trial[g + l], V.eqps[g + l], V.temperature[g + l], threeG, dt);
 			to.scale[g + l] = r.scale, to.flow[g + l] = r.dEqps;
 		}
 	}
@@ -103,7 +106,8 @@ namespace {
 	}
 
 	/// State after the return; fills factor = J times its scale.
-	template <YieldKind kind, bool account> MCA_INLINE void yieldBlock(const BlockView& V, const Sums& sums, const Returns& R, double* factor, BlockWork* work)
+	template <YieldKind kind, bool account>
+	MCA_INLINE void yieldBlock(const BlockView& V, const Sums& sums, const Returns& R, double* factor, BlockWork* work)
 	{
 		const Yield  yield = V.material.yield;
 		const double threeG = 3. * V.material.G, perRho = 1. / V.material.eos.rho0, sixth = Lattice::cell(V.d) / nLinks;
@@ -143,14 +147,16 @@ namespace {
 		double         worst = 0;
 #pragma omp simd reduction(max : worst)
 		for (int l = 0; l < blockSize; l++) {
-			const double one = criterion(c, V.eqps[l], V.P[l], equivalentStressAfter(R.scale[l], sums.square[l] * V.invN[l], V.szz[l]), V.strength[l]);
+			const double one =
+				criterion(c, V.eqps[l], V.P[l], equivalentStressAfter(R.scale[l], sums.square[l] * V.invN[l], V.szz[l]), V.strength[l]);
 			V.criterion[l]   = one;
 			worst            = max(worst, V.flags[l] & linkBits ? one : 0.);
 		}
 		return worst;
 	}
 
-	template <YieldKind kind, bool intact, bool mixed, bool account> void run(const BlockView& V, const Store& S, double dt, const Extra& X, BlockResult& out, BlockWork* work)
+	template <YieldKind kind, bool intact, bool mixed, bool account>
+	void run(const BlockView& V, const Store& S, double dt, const Extra& X, BlockResult& out, BlockWork* work)
 	{
 		const bool         contacts = V.block.contact && X.contactSq;
 		Sums               sums;
@@ -175,7 +181,8 @@ void stressPass(Store& S, size_t b, double dt, const Extra& X, BlockResult& out,
 {
 	const BlockView V(S, b);
 	dispatch(V.material.yield.kind, [&](auto kind) {
-		choices([&](auto intact, auto mixed, auto account) { run<kind.value, intact.value, mixed.value, account.value>(V, S, dt, X, out, work); }, V.block.intact, V.block.mixed, work != nullptr);
+		choices([&](auto intact, auto mixed, auto account) { run<kind.value, intact.value, mixed.value, account.value>(V, S, dt, X, out, work); },
+		        V.block.intact, V.block.mixed, work != nullptr);
 	});
 }
 }

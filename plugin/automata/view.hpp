@@ -14,12 +14,41 @@ struct BlockView {
 	double *        J, *dTheta, *P, *h, *factor, *rest, *szz, *eqps, *temperature, *heat, *criterion, *s, *tau, *record, *push, *fx, *fy, *torque;
 	const int32_t * flags, *neighbour;
 	BlockView(Store& S, size_t b)
-	        : block(S.blocks[b]), material(S.materialOf(block)), d(S.species[block.species].d), base(b * blockSize), x(S.x.data() + base), y(S.y.data() + base), vx(S.vx.data() + base), vy(S.vy.data() + base)
-	        , omega(S.omega.data() + base), cell(S.cell.data() + base), invN(S.invN.data() + base), strength(S.strength.data() + base), diameterOfAll(S.diameter.data()), node(S.node.data())
-	        , pushOfAll(S.push.data()), J(S.J.data() + base), dTheta(S.dTheta.data() + base), P(S.P.data() + base), h(S.h.data() + base), factor(S.factor.data() + base), rest(S.rest.data() + base)
-	        , szz(S.szz.data() + base), eqps(S.eqps.data() + base), temperature(S.temperature.data() + base), heat(S.heat.empty() ? nullptr : S.heat.data() + base), criterion(S.criterion.data() + base)
-	        , s(S.s.data() + base * nLinks), tau(S.tau.data() + base * nLinks), record(S.node.data() + base * nodeSize), push(S.push.data() + base * pushSize), fx(S.fx.data() + base), fy(S.fy.data() + base)
-	        , torque(S.torque.data() + base), flags(S.flags.data() + base), neighbour(S.neighbour.data() + base * nLinks)
+		: block(S.blocks[b])
+		, material(S.materialOf(block))
+		, d(S.species[block.species].d)
+		, base(b * blockSize)
+		, x(S.x.data() + base)
+		, y(S.y.data() + base)
+		, vx(S.vx.data() + base)
+		, vy(S.vy.data() + base)
+		, omega(S.omega.data() + base)
+		, cell(S.cell.data() + base)
+		, invN(S.invN.data() + base)
+		, strength(S.strength.data() + base)
+		, diameterOfAll(S.diameter.data())
+		, node(S.node.data())
+		, pushOfAll(S.push.data())
+		, J(S.J.data() + base)
+		, dTheta(S.dTheta.data() + base)
+		, P(S.P.data() + base)
+		, h(S.h.data() + base)
+		, factor(S.factor.data() + base)
+		, rest(S.rest.data() + base)
+		, szz(S.szz.data() + base)
+		, eqps(S.eqps.data() + base)
+		, temperature(S.temperature.data() + base)
+		, heat(S.heat.empty() ? nullptr : S.heat.data() + base)
+		, criterion(S.criterion.data() + base)
+		, s(S.s.data() + base * nLinks)
+		, tau(S.tau.data() + base * nLinks)
+		, record(S.node.data() + base * nodeSize)
+		, push(S.push.data() + base * pushSize)
+		, fx(S.fx.data() + base)
+		, fy(S.fy.data() + base)
+		, torque(S.torque.data() + base)
+		, flags(S.flags.data() + base)
+		, neighbour(S.neighbour.data() + base * nLinks)
 	{
 	}
 	/// Neighbours by link k of the eight automata from lane g on.
@@ -58,7 +87,10 @@ template <bool intact> MCA_INLINE v8 choose(m8 on, v8 a, v8 b) { return intact ?
 template <bool intact> MCA_INLINE Vec<v8> choose(m8 on, Vec<v8> a, Vec<v8> b) { return { choose<intact>(on, a.x, b.x), choose<intact>(on, a.y, b.y) }; }
 /// Lanes in which link k holds, and their weights.
 MCA_INLINE m8 holding(m8 flags, int k) { return ((flags >> k) & 1) != 0; }
-template <bool intact> MCA_INLINE v8 weights(m8 flags, int k) { return choose<intact>(((flags >> (halfShift + k)) & 1) != 0, splat(intact ? 1. : 0.5), splat(1.)); }
+template <bool intact> MCA_INLINE v8 weights(m8 flags, int k)
+{
+	return choose<intact>(((flags >> (halfShift + k)) & 1) != 0, splat(intact ? 1. : 0.5), splat(1.));
+}
 
 /// f(b1, b2, ...) with these truth values as compile-time constants.
 template <class F> MCA_INLINE void choices(F&& f) { f(); }

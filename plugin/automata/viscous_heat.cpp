@@ -18,7 +18,9 @@ void viscousHeat(Store& S, size_t b, double dt, BlockWork* work)
 			const Vec<double>   r { S.x[j] - S.x[i], S.y[j] - S.y[i] }, v { S.vx[j] - S.vx[i], S.vy[j] - S.vy[i] };
 			const double        along = dot(r, v);
 			const PairViscosity c = B.mixed ? S.pairViscosity(B.species, j) : viscosityOf(m);
-			q += 0.5 * linkWeight(S.flags[i], k) * viscousCoefficient(along, 1. / dot(r, r), c.linear, c.quadratic, Lattice::width(S.restDistance(i, j))) * along * dt; // this side's half
+			q += 0.5 * linkWeight(S.flags[i], k)
+				* viscousCoefficient(along, 1. / dot(r, r), c.linear, c.quadratic, Lattice::width(S.restDistance(i, j))) * along
+				* dt; // this side's half
 		}
 		S.heat[i] += q * perMass / S.cell[i];
 		sum += q;

@@ -77,7 +77,8 @@ void Solver::shiftVolume(size_t i, double J)
 	Store&       S     = store;
 	const Block& B     = S.blocks[i / blockSize];
 	const double ratio = J / S.J[i];
-	if (options.account) sums.coupling += (S.materialOf(B).eos.heats() ? 0. : coldEnergyAt(i, S.J[i]) - coldEnergyAt(i, J)) + deviatorEnergyOf(i) * (1. - ratio);
+	if (options.account)
+		sums.coupling += (S.materialOf(B).eos.heats() ? 0. : coldEnergyAt(i, S.J[i]) - coldEnergyAt(i, J)) + deviatorEnergyOf(i) * (1. - ratio);
 	S.J[i] = J;
 	S.factor[i] *= ratio;
 	scaleStresses(i, ratio);

@@ -16,7 +16,8 @@ namespace {
 			V.record[nodeSize * l + 5] = V.dTheta[l];
 	}
 
-	template <VolumeRule rule, bool intact, bool mixed, EosKind law> void sumRule(const BlockView& V, const Store& S, const double* contactSum, bool init, BlockResult& out)
+	template <VolumeRule rule, bool intact, bool mixed, EosKind law>
+	void sumRule(const BlockView& V, const Store& S, const double* contactSum, bool init, BlockResult& out)
 	{
 		constexpr bool        hot = LawOf<law>::heats;
 		const VolumeConstants<law> c(V.material, V.d);
@@ -112,7 +113,8 @@ namespace {
 #pragma omp simd reduction(max : stiffest, closing, widest) reduction(+ : clampCount, badCount) reduction(min : nearest)
 		for (int l = 0; l < blockSize; l++) {
 			const Tensor<double>    F = { L.xx[l], L.xy[l], L.yx[l], L.yy[l] };
-			const Symmetric<double> e = intact ? Symmetric<double> { Lattice::spread, 0., Lattice::spread } : Symmetric<double> { L.exx[l], L.exy[l], L.eyy[l] };
+			const Symmetric<double> e =
+				intact ? Symmetric<double> { Lattice::spread, 0., Lattice::spread } : Symmetric<double> { L.exx[l], L.exy[l], L.eyy[l] };
 			const double            J = affineRatio(c, F, V.factor[l], V.rest[l], contactSum ? contactSum[l] : 0.), Jo = init ? J : V.J[l];
 			const PressureState     p = pressureStep(c, J, Jo, { V.P[l], hot ? V.heat[l] : 0. }, V.factor[l] > 0.);
 			const Tensor<double>    t = affinePush(c, F, V.factor[l], p.P, V.cell[l]);
@@ -148,8 +150,11 @@ void volumePass(Store& S, size_t b, VolumeRule rule, const Extra& X, bool init, 
 	const double*   contactSum = V.block.contact && X.contactSum ? X.contactSum + V.base : nullptr;
 	dispatch(V.material.eos.kind, [&](auto law) {
 		dispatch(rule, [&](auto r) {
-			if constexpr (r.value == VolumeRule::affine) choices([&](auto intact) { affineRule<intact.value, law.value>(V, contactSum, init, out); }, V.block.intact);
-			else choices([&](auto intact, auto mixed) { sumRule<r.value, intact.value, mixed.value, law.value>(V, S, contactSum, init, out); }, V.block.intact, V.block.mixed);
+			if constexpr (r.value == VolumeRule::affine)
+				choices([&](auto intact) { affineRule<intact.value, law.value>(V, contactSum, init, out); }, V.block.intact);
+			else
+				choices([&](auto intact, auto mixed) { sumRule<r.value, intact.value, mixed.value, law.value>(V, S, contactSum, init, out); },
+				        V.block.intact, V.block.mixed);
 		});
 	});
 	publishDilation(V);

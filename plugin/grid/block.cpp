@@ -129,7 +129,8 @@ void Block::takeRestGeometry()
 			if (!(a > 0) || !std::isfinite(a)) {
 				std::ostringstream s;
 				s << cellName(i, j) << ": area " << a
-				  << " m2 is not allowed; it must be finite and above zero. Give node coordinates so that rows (second index) lie to the left of "
+				  << " m2 is not allowed; it must be finite and above zero. Give node coordinates so that rows (second index) lie to the left "
+				     "of "
 				     "the direction of the first index (counter-clockwise cells) and no cell is degenerate.";
 				throw Error(s.str());
 			}

@@ -24,9 +24,13 @@ void Table::validate(const std::string& what) const
 		if (!std::isfinite(value[k]) || !std::isfinite(time[k]))
 			throw Error(what + ": entry " + std::to_string(k) + " of the table is not finite; give finite times [s] and values.");
 		if (!(std::fabs(value[k]) <= 1e18))
-			throw Error(what + ": entry " + std::to_string(k) + " of the table is " + std::to_string(value[k]) + "; it must lie within -1e18 and 1e18, beyond which no number of the grid stays finite.");
+			throw Error(
+				what + ": entry " + std::to_string(k) + " of the table is " + std::to_string(value[k])
+				+ "; it must lie within -1e18 and 1e18, beyond which no number of the grid stays finite.");
 		if (k && !(time[k] > time[k - 1]))
-			throw Error(what + ": times must rise, but entry " + std::to_string(k) + " (" + std::to_string(time[k]) + " s) does not exceed the one before it.");
+			throw Error(
+				what + ": times must rise, but entry " + std::to_string(k) + " (" + std::to_string(time[k])
+				+ " s) does not exceed the one before it.");
 	}
 }
 
@@ -83,7 +87,8 @@ void Boundary::constrain(int node, double nx, double ny, int table, const std::s
 	for (auto it = near.first; it != near.second; ++it)
 		if (heldAlike(node, it->second)) {
 			constraints_.erase(constraints_.begin() + long(range.second));
-			throw Error("overlapping boundary conditions at " + where + ": the edge is viscous and its velocity is prescribed. Remove one of them.");
+			throw Error(
+				"overlapping boundary conditions at " + where + ": the edge is viscous and its velocity is prescribed. Remove one of them.");
 		}
 	mark(node);
 }
@@ -94,8 +99,12 @@ void Boundary::load(const EdgeLoad& l, const std::string& where)
 	for (auto it = range.first; it != range.second; ++it) {
 		const EdgeLoad& o = edgeLoads_[it->second];
 		if (o.kind == LoadKind::viscous || l.kind == LoadKind::viscous || o.kind == l.kind)
-			throw Error("overlapping boundary conditions at " + where + ": the edge already carries a "
-			            + (o.kind == LoadKind::viscous ? "viscous boundary" : o.kind == LoadKind::pressure ? "pressure" : "traction") + ". Remove one of them.");
+			throw Error(
+				"overlapping boundary conditions at " + where + ": the edge already carries a "
+				+ (o.kind == LoadKind::viscous            ? "viscous boundary"
+			                   : o.kind == LoadKind::pressure ? "pressure"
+			                                                  : "traction")
+				+ ". Remove one of them.");
 	}
 	if (l.kind == LoadKind::viscous && heldAlike(l.a, l.b))
 		throw Error("overlapping boundary conditions at " + where + ": the edge is viscous and its velocity is prescribed. Remove one of them.");

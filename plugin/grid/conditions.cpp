@@ -13,8 +13,8 @@ std::string Grid::nodeName(int node) const
 	const Block& b = *blocks_[size_t(open_.copyBlock[size_t(c)])];
 	int          i, j;
 	b.nodeOfCopy(c, i, j);
-	return "block '" + b.options.name + "', node (" + std::to_string(i) + ", " + std::to_string(j) + "), cell (" + std::to_string(std::min(i, b.ni - 1)) + ", "
-	        + std::to_string(std::min(j, b.nj - 1)) + ")";
+	return "block '" + b.options.name + "', node (" + std::to_string(i) + ", " + std::to_string(j) + "), cell (" + std::to_string(std::min(i, b.ni - 1))
+		+ ", " + std::to_string(std::min(j, b.nj - 1)) + ")";
 }
 
 void Grid::checkNodes(const std::vector<int>& nodes, const char* what) const
@@ -43,8 +43,9 @@ std::vector<int> Grid::sideNodes(int block, Side side, int from, int to)
 	const bool   alongI = side == Side::bottom || side == Side::top;
 	const int    last  = alongI ? b.ni : b.nj;
 	if (from < 0 || to < -1 || to > last || from > (to < 0 ? last : to))
-		throw Error("side of block '" + b.options.name + "': nodes start = " + std::to_string(from) + " to end = " + std::to_string(to) + " are not allowed; the side has nodes 0 to "
-		            + std::to_string(last) + ", and -1 is the last.");
+		throw Error(
+			"side of block '" + b.options.name + "': nodes start = " + std::to_string(from) + " to end = " + std::to_string(to)
+			+ " are not allowed; the side has nodes 0 to " + std::to_string(last) + ", and -1 is the last.");
 	if (to < 0) to = last;
 	std::vector<int> out;
 	for (int k = from; k <= to; k++) {
@@ -85,7 +86,10 @@ void Grid::symmetry(int block, Side side)
 std::vector<EdgeLoad> Grid::sideEdges(int block, Side side, int from, int to)
 {
 	std::vector<int> n     = sideNodes(block, side, from, to);
-	if (n.size() < 2) throw Error("side of block '" + blocks_[size_t(block)]->options.name + "': start = " + std::to_string(from) + " and end = " + std::to_string(to) + " are one node, which has no edge to load; name at least two nodes.");
+	if (n.size() < 2)
+		throw Error(
+			"side of block '" + blocks_[size_t(block)]->options.name + "': start = " + std::to_string(from) + " and end = " + std::to_string(to)
+			+ " are one node, which has no edge to load; name at least two nodes.");
 	const Block&     b     = *blocks_[size_t(block)];
 	const bool       alongI = side == Side::bottom || side == Side::top, flip = side == Side::top || side == Side::left;
 	const double     rho   = b.material.eos.rho0;

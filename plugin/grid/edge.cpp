@@ -8,8 +8,9 @@ namespace mca::grid {
 
 namespace {
 	/// 1 - psi of an edge from the velocity slopes of the edges before and after it on the same grid line, projected on this edge.
-	inline double oneMinusPsi(double dvx, double dvy, double dx, double dy, double bvx, double bvy, double bx, double by, bool before, double avx, double avy, double ax,
-	                          double ay, bool after)
+	inline double oneMinusPsi(
+		double dvx, double dvy, double dx, double dy, double bvx, double bvy, double bx, double by, bool before, double avx, double avy, double ax,
+		double ay, bool after)
 	{
 		const double vv = dvx * dvx + dvy * dvy, xx = dx * dx + dy * dy;
 		if (!(vv > 0.)) return 0.; // no difference, no force
@@ -31,8 +32,9 @@ namespace {
 	};
 
 	/// Edge from a to b of a cell with centre (cx, cy); open = 1 - psi.
-	inline Edge edgeForce(double ax, double ay, double bx, double by, double avx, double avy, double bvx, double bvy, double cx, double cy, double open, double rho,
-	                      double rhoC, const Viscosity& v)
+	inline Edge edgeForce(
+		double ax, double ay, double bx, double by, double avx, double avy, double bvx, double bvy, double cx, double cy, double open, double rho,
+		double rhoC, const Viscosity& v)
 	{
 		const double dx = bx - ax, dy = by - ay, ux = bvx - avx, uy = bvy - avy;
 		const double speed = std::sqrt(ux * ux + uy * uy);
@@ -56,8 +58,9 @@ void edgeLimiterRow(Block& b, int j)
 		const bool before = i > 0, after = i + 2 <= b.ni;
 		const long p = before ? i - 1 : i, q = after ? i + 2 : i + 1;
 		b.limiterX[n + size_t(i)] = oneMinusPsi(
-		        difference(vx, i, i + 1), difference(vy, i, i + 1), difference(x, i, i + 1), difference(y, i, i + 1), difference(vx, p, i), difference(vy, p, i), difference(x, p, i),
-		        difference(y, p, i), before, difference(vx, i + 1, q), difference(vy, i + 1, q), difference(x, i + 1, q), difference(y, i + 1, q), after);
+			difference(vx, i, i + 1), difference(vy, i, i + 1), difference(x, i, i + 1), difference(y, i, i + 1), difference(vx, p, i),
+			difference(vy, p, i), difference(x, p, i), difference(y, p, i), before, difference(vx, i + 1, q), difference(vy, i + 1, q),
+			difference(x, i + 1, q), difference(y, i + 1, q), after);
 	}
 	if (j == b.nj || b.awake[size_t(j)].empty()) return;
 	const long w      = long(b.pitch);
@@ -65,8 +68,9 @@ void edgeLimiterRow(Block& b, int j)
 	for (long i = b.awake[size_t(j)].lo; i <= b.awake[size_t(j)].hi; i++) {
 		const long p = before ? i - w : i, q = after ? i + 2 * w : i + w;
 		b.limiterY[n + size_t(i)] = oneMinusPsi(
-		        difference(vx, i, i + w), difference(vy, i, i + w), difference(x, i, i + w), difference(y, i, i + w), difference(vx, p, i), difference(vy, p, i), difference(x, p, i),
-		        difference(y, p, i), before, difference(vx, i + w, q), difference(vy, i + w, q), difference(x, i + w, q), difference(y, i + w, q), after);
+			difference(vx, i, i + w), difference(vy, i, i + w), difference(x, i, i + w), difference(y, i, i + w), difference(vx, p, i),
+			difference(vy, p, i), difference(x, p, i), difference(y, p, i), before, difference(vx, i + w, q), difference(vy, i + w, q),
+			difference(x, i + w, q), difference(y, i + w, q), after);
 	}
 }
 
@@ -103,7 +107,8 @@ template <EosKind eos> __attribute__((flatten)) uint64_t edgeLoop(const Block& b
 		const double      cx = 0.25 * ((x0[i] + x0[i + 1]) + (x1[i] + x1[i + 1])), cy = 0.25 * ((y0[i] + y0[i + 1]) + (y1[i] + y1[i + 1]));
 		const auto&       v  = c.viscosity;
 		const Edge e0 = edgeForce(x0[i], y0[i], x0[i + 1], y0[i + 1], vx0[i], vy0[i], vx0[i + 1], vy0[i + 1], cx, cy, below[i], rho, rhoC, v);
-		const Edge e1 = edgeForce(x0[i + 1], y0[i + 1], x1[i + 1], y1[i + 1], vx0[i + 1], vy0[i + 1], vx1[i + 1], vy1[i + 1], cx, cy, sides[i + 1], rho, rhoC, v);
+		const Edge        e1 = edgeForce(
+			       x0[i + 1], y0[i + 1], x1[i + 1], y1[i + 1], vx0[i + 1], vy0[i + 1], vx1[i + 1], vy1[i + 1], cx, cy, sides[i + 1], rho, rhoC, v);
 		const Edge e2 = edgeForce(x1[i], y1[i], x1[i + 1], y1[i + 1], vx1[i], vy1[i], vx1[i + 1], vy1[i + 1], cx, cy, above[i], rho, rhoC, v);
 		const Edge e3 = edgeForce(x0[i], y0[i], x1[i], y1[i], vx0[i], vy0[i], vx1[i], vy1[i], cx, cy, sides[i], rho, rhoC, v);
 		// corner forces f0 = e0 + e3, f1 = e1 - e0, f2 = -e1 - e2, f3 = e2 - e3 in the form T0, T1, R of kernels/cell.hpp

@@ -33,14 +33,16 @@ void Grid::partition(int threads, std::vector<int>& first) const
 	}
 }
 
-void Grid::computeForces(double dt)
+/// Throws Error, before anything has moved, unless a step of dt [s] can be done.
+void Grid::checkStep(double dt)
 {
 	mustBeBuilt();
 	if (!failure_.empty()) throw Error("the grid has stopped and cannot go on: " + failure_ + " Save it for inspection, or restore an earlier state.");
 	if (between_) throw Error("grid: computeForces was called twice; integrate must follow it.");
 	if (!(dt > 0) || !std::isfinite(dt)) {
 		std::ostringstream s;
-		s << "grid: time step " << dt << " s is not allowed; it must be finite and above zero, at most " << criticalTimeStep() << " s (" << criticalCell() << ").";
+		s << "grid: time step " << dt << " s is not allowed; it must be finite and above zero, at most " << criticalTimeStep() << " s ("
+		  << criticalCell() << ").";
 		throw Error(s.str());
 	}
 	if (dt > criticalTimeStep() * (1. + 1e-12)) {
@@ -50,6 +52,27 @@ void Grid::computeForces(double dt)
 		  << ". Nothing has moved: lower the time step and go on.";
 		throw Error(s.str());
 	}
+}
+
+/// Forces of the nodes that are summed one by one, from the corners of their cells.
+void Grid::sumCorners()
+{
+	OpenNodes& o = open_;
+	const auto sum = [&](const std::vector<double>* c, size_t k) { return (c[3][k] + c[2][k]) + (c[1][k] + c[0][k]); };
+	for (size_t k = 0; k < size_t(o.size()); k++) {
+		const size_t c = size_t(o.firstCopy[k]);
+		o.fx[k]        = sum(o.corner, c);
+		o.fy[k]        = sum(o.corner + 4, c);
+	}
+	for (const int r : o.repeats) {
+		o.fx[size_t(o.copyMaster[size_t(r)])] += sum(o.corner, size_t(r));
+		o.fy[size_t(o.copyMaster[size_t(r)])] += sum(o.corner + 4, size_t(r));
+	}
+}
+
+void Grid::computeForces(double dt)
+{
+	checkStep(dt);
 	if (bands_.empty())
 		for (size_t b = 0; b < blocks_.size(); b++)
 			for (size_t k = 0; k + 1 < blocks_[b]->bandStart.size(); k++) bands_.push_back({ int(b), int(k) });
@@ -87,26 +110,17 @@ void Grid::computeForces(double dt)
 				sweepBand(b, band, s, ws);
 				// a seam belongs to whoever completes the second of its two bands: no barrier, and its rows are still in the cache
 				for (const int seam : { band - 1, band })
-					if (seam >= 0 && size_t(seam) < b.seamReady.size() && __atomic_add_fetch(&b.seamReady[size_t(seam)], 1, __ATOMIC_ACQ_REL) == 2)
-						finishSeam(b, seam, s, ws);
+                                        if (seam >= 0 && size_t(seam) < b.seamReady.size()
+                                            && __atomic_add_fetch(&b.seamReady[size_t(seam)], 1, __ATOMIC_ACQ_REL) == 2)
+                                                finishSeam(b, seam, s, ws);
 			}
 	}
 	uint64_t worst = 0;
 	for (auto& b : blocks_)
 		for (const uint64_t w : b->bandWorst) worst = std::max(worst, w);
 
-	OpenNodes& o = open_;
-	const auto sum = [&](const std::vector<double>* c, size_t k) { return (c[3][k] + c[2][k]) + (c[1][k] + c[0][k]); };
-	for (size_t k = 0; k < size_t(o.size()); k++) {
-		const size_t c = size_t(o.firstCopy[k]);
-		o.fx[k]        = sum(o.corner, c);
-		o.fy[k]        = sum(o.corner + 4, c);
-	}
-	for (const int r : o.repeats) {
-		o.fx[size_t(o.copyMaster[size_t(r)])] += sum(o.corner, size_t(r));
-		o.fy[size_t(o.copyMaster[size_t(r)])] += sum(o.corner + 4, size_t(r));
-	}
-	boundary_.forces(o, time_);
+	sumCorners();
+	boundary_.forces(open_, time_);
 	between_ = true;
 	dtNow_   = dt;
 	failIfBad(worst);
@@ -159,7 +173,8 @@ namespace {
 		CellState     s = { 0, 0, 0, 0, 0, 0, 0 };
 		return dispatch(c.eos.kind, [&](auto eos) {
 			constexpr auto Q = GridViscosity::scalar, none = GridViscosity::none;
-			const auto     update = b.material.viscosity.active() ? updateCell<YieldKind::elastic, Q, true, eos.value> : updateCell<YieldKind::elastic, none, true, eos.value>;
+			const auto     update = b.material.viscosity.active() ? updateCell<YieldKind::elastic, Q, true, eos.value>
+									      : updateCell<YieldKind::elastic, none, true, eos.value>;
 			return update(c, b.positionPattern(i, j), b.velocityPattern(i, j), b.restArea[b.cell(i, j)], 0., s).rate;
 		});
 	}
@@ -219,8 +234,9 @@ void Grid::failIfBad(uint64_t worst)
 				const CellPattern p = b->positionPattern(i, j);
 				const double      a = cellArea(p), sum = b->sxx[c] + b->syy[c] + b->sxy[c] + b->rx[c] + b->ry[c] + b->eqps[c];
 				if (a > 0 && std::isfinite(sum) && std::isfinite(a)) continue;
-				s << b->cellName(i, j) << ": " << (a <= 0 ? "the cell is turned inside out" : "a number is not finite") << " (area " << a << " m2, rest area "
-				  << b->restArea[c] << " m2, stress " << b->sxx[c] << ", " << b->syy[c] << ", " << b->sxy[c] << " Pa) at time " << time_
+				s << b->cellName(i, j) << ": " << (a <= 0 ? "the cell is turned inside out" : "a number is not finite") << " (area " << a
+				  << " m2, rest area " << b->restArea[c] << " m2, stress " << b->sxx[c] << ", " << b->syy[c] << ", " << b->sxy[c]
+				  << " Pa) at time " << time_
 				  << " s. Lower the time step, raise viscosity or hourglass stiffness, or use automata where the deformation is this large.";
 				failure_ = s.str();
 				throw Error(failure_);

@@ -122,6 +122,9 @@ public:
 private:
 	Grid& operator=(Grid&&) = default; ///< of restore()
 	template <class Archive> void fields(Archive& a);
+	void                          checkStep(double dt);
+	void                          sumCorners();
+	static uint64_t               layout(); ///< of the saved state: follows from the names and kinds of what fields() lists
 	void                          checkState() const; ///< after reading: throws Error unless all fits together
 	void                          checkBlock(const Block& b, int copies) const;
 	void                          checkOpen() const;

@@ -7,12 +7,18 @@
 namespace mca::grid {
 
 namespace {
-	constexpr uint64_t formatVersion = 2 ^ lawsVersion(); // changes with the laws and their constants
-
 	[[noreturn]] void damaged() { throw Error("grid: the saved state is damaged; it cannot be restored."); }
 
+	/// The kinds and names of all that is saved, as one number: a state belongs to this plugin when it has the same.
+	struct Layout {
+		static constexpr bool reading = false, describing = true;
+		uint64_t              hash = lawsVersion();
+		void                  names(const char* text) { hash = nameHash(text, hash); }
+		void                  raw(const void*, size_t n) { hash = (hash ^ n) * 1099511628211ULL; }
+	};
 	struct Writer {
-		static constexpr bool reading = false;
+		static constexpr bool reading = false, describing = false;
+		void                  names(const char*) { }
 		std::vector<char>     bytes;
 		void raw(const void* p, size_t n)
 		{
@@ -21,7 +27,8 @@ namespace {
 		}
 	};
 	struct Reader {
-		static constexpr bool    reading = true;
+		static constexpr bool    reading = true, describing = false;
+		void                     names(const char*) { }
 		const std::vector<char>& bytes;
 		size_t                   at = 0;
 		size_t                   left() const { return bytes.size() - at; }
@@ -61,6 +68,7 @@ namespace {
 			if (n > a.left() / bytesEach) damaged();
 			v.resize(size_t(n));
 		}
+		if constexpr (A::describing) v.resize(1); // so that the members of an entry are seen
 	}
 	template <class A> void io(A& a, std::string& s)
 	{
@@ -68,22 +76,23 @@ namespace {
 		a.raw(s.data(), s.size());
 	}
 	template <class A, class T> void io(A& a, std::vector<T>& v);
-	template <class A> void          io(A& a, Table& t) { io(a, t.time), io(a, t.value); }
-	template <class A> void          io(A& a, Range& r) { io(a, r.lo), io(a, r.hi); }
-	template <class A> void          io(A& a, Constraint& c) { io(a, c.node), io(a, c.nx), io(a, c.ny), io(a, c.table); }
-	template <class A> void          io(A& a, NodeLoad& l) { io(a, l.node), io(a, l.tableX), io(a, l.tableY); }
+	template <class A, class... T> void each(A& a, const char* names, T&... v);
+#define MCA_EACH(a, ...) each(a, #__VA_ARGS__, __VA_ARGS__)
+	template <class A> void          io(A& a, Table& t) { MCA_EACH(a, t.time, t.value); }
+	template <class A> void          io(A& a, Range& r) { MCA_EACH(a, r.lo, r.hi); }
+	template <class A> void          io(A& a, Constraint& c) { MCA_EACH(a, c.node, c.nx, c.ny, c.table); }
+	template <class A> void          io(A& a, NodeLoad& l) { MCA_EACH(a, l.node, l.tableX, l.tableY); }
 	template <class A> void          io(A& a, EdgeLoad& l)
 	{
-		io(a, l.kind), io(a, l.a), io(a, l.b), io(a, l.tableX), io(a, l.tableY), io(a, l.restLength), io(a, l.zP), io(a, l.zS), io(a, l.block), io(a, l.i),
-		        io(a, l.j);
+		MCA_EACH(a, l.kind, l.a, l.b, l.tableX, l.tableY, l.restLength, l.zP, l.zS, l.block, l.i, l.j);
 	}
 	template <class A> void io(A& a, Sample& s)
 	{
-		for (double* p : { &s.time, &s.x, &s.y, &s.vx, &s.vy, &s.pressure, &s.sxx, &s.syy, &s.sxy, &s.eqps }) io(a, *p);
+		MCA_EACH(a, s.time, s.x, s.y, s.vx, s.vy, s.pressure, s.sxx, s.syy, s.sxy, s.eqps);
 	}
 	template <class A> void io(A& a, Gauge& g)
 	{
-		io(a, g.at.block), io(a, g.at.i), io(a, g.at.j), io(a, g.at.u), io(a, g.at.v), io(a, g.period), io(a, g.history);
+		MCA_EACH(a, g.at.block, g.at.i, g.at.j, g.at.u, g.at.v, g.period, g.history);
 	}
 	template <class A> void io(A& a, Material& m)
 	{
@@ -102,46 +111,64 @@ namespace {
 	}
 	template <class A> void io(A& a, Block& b)
 	{
-		io(a, b.material), io(a, b.options.name), io(a, b.options.hourglass), io(a, b.options.edgeViscosity), io(a, b.account);
+		MCA_EACH(a, b.material, b.options.name, b.options.hourglass, b.options.edgeViscosity, b.account);
 		int ni = b.ni, nj = b.nj;
-		io(a, ni), io(a, nj);
+		MCA_EACH(a, ni, nj);
 		if constexpr (A::reading) {
 			// at least twelve arrays of all nodes follow, rows of whole cache lines
 			if (ni < 1 || nj < 1 || (uint64_t(ni) + 8) / 8 * 8 * (uint64_t(nj) + 1) > a.left() / (12 * sizeof(double))) damaged();
 			b.allocate(ni, nj);
 		}
-		io(a, b.arena), io(a, b.awake), io(a, b.moving), io(a, b.allAwake), io(a, b.firstCopy), io(a, b.nCopies), io(a, b.interiorOpen),
-		        io(a, b.interiorOpenRowStart), io(a, b.bandWorst);
+		MCA_EACH(a, b.arena, b.awake, b.moving, b.allAwake, b.firstCopy, b.nCopies, b.interiorOpen, b.interiorOpenRowStart, b.bandWorst);
+	}
+	template <class A, class... T> void each(A& a, const char* names, T&... v)
+	{
+		a.names(names);
+		(io(a, v), ...);
 	}
 	template <class A> void io(A& a, OpenNodes& o)
 	{
-		for (auto* v : { &o.x, &o.y, &o.vx, &o.vy, &o.mass, &o.addedMass, &o.fx, &o.fy, &o.lx, &o.ly, &o.ex, &o.ey, &o.wx, &o.wy, &o.copyMass, &o.copyVx, &o.copyVy })
-			io(a, *v);
+		MCA_EACH(a, o.x, o.y, o.vx, o.vy, o.mass, o.addedMass, o.fx, o.fy, o.lx, o.ly, o.ex, o.ey, o.wx, o.wy, o.copyMass, o.copyVx, o.copyVy);
 		for (auto& c : o.corner) io(a, c);
-		io(a, o.copyMaster), io(a, o.copyBlock), io(a, o.copyNode), io(a, o.repeats), io(a, o.firstCopy);
+		MCA_EACH(a, o.copyMaster, o.copyBlock, o.copyNode, o.repeats, o.firstCopy);
 	}
 }
 
-template <class A> void Boundary::fields(A& a) { io(a, tables_), io(a, constraints_), io(a, edgeLoads_), io(a, nodeLoads_); }
+template <class A> void Boundary::fields(A& a) { MCA_EACH(a, tables_, constraints_, edgeLoads_, nodeLoads_); }
 
 template <class A> void Grid::fields(A& a)
 {
-	uint64_t version = formatVersion, count = blocks_.size();
+	uint64_t version = 0, count = blocks_.size();
+	if constexpr (!A::describing) version = layout();
 	io(a, version);
-	if (version != formatVersion)
-		throw Error("grid: the state was saved in format " + std::to_string(version) + ", this version reads format " + std::to_string(formatVersion) + ": the version that wrote it must load it.");
-	io(a, options_.account), io(a, options_.skip), io(a, options_.safety), io(a, count);
+	if (!A::describing && version != layout())
+		throw Error("grid: the saved state has another layout: another version of the plugin has written it and must load it.");
+	MCA_EACH(a, options_.account, options_.skip, options_.safety, count);
 	if constexpr (A::reading) {
 		if (count > a.left() / (12 * 4 * sizeof(double))) damaged();
 		for (uint64_t k = 0; k < count; k++) blocks_.push_back(std::make_unique<Block>());
 	}
+	if constexpr (A::describing) { // a grid without blocks would not show their members
+		Block one;
+		one.allocate(1, 1);
+		io(a, one);
+	}
 	for (auto& b : blocks_) io(a, *b);
 	io(a, open_);
 	boundary_.fields(a);
-	for (double* p : { &account_.loads, &account_.external, &account_.constraints, &account_.viscous, &account_.impulseX, &account_.impulseY, &time_, &dtPrevious_,
-	                   &dtNow_, &restSpeed_, &maxRate_, &restRate_ })
-		io(a, *p);
-	io(a, gauges_), io(a, built_), io(a, between_), io(a, ratesKnown_), io(a, steps_), io(a, failure_);
+	MCA_EACH(a, account_.loads, account_.external, account_.constraints, account_.viscous, account_.impulseX, account_.impulseY);
+	MCA_EACH(a, time_, dtPrevious_, dtNow_, restSpeed_, maxRate_, restRate_);
+	MCA_EACH(a, gauges_, built_, between_, ratesKnown_, steps_, failure_);
+}
+
+uint64_t Grid::layout()
+{
+	static const uint64_t version = [] {
+		Layout l;
+		Grid().fields(l);
+		return l.hash;
+	}();
+	return version;
 }
 
 std::vector<char> Grid::save() const

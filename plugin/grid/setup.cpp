@@ -55,7 +55,9 @@ int Grid::addBlock(const Material& m, int ni, int nj, const std::vector<double>&
 	const std::string& name = b->options.name;
 	if (built_) throw Error("block '" + name + "': the grid is complete already; add all blocks before boundaries, gauges and steps.");
 	if (ni < 1 || nj < 1)
-		throw Error("block '" + name + "': " + std::to_string(ni) + " x " + std::to_string(nj) + " cells is not allowed; at least 1 x 1 (two grid lines each way).");
+		throw Error(
+			"block '" + name + "': " + std::to_string(ni) + " x " + std::to_string(nj)
+			+ " cells is not allowed; at least 1 x 1 (two grid lines each way).");
 	const size_t n = size_t(ni + 1) * size_t(nj + 1);
 	if (x.size() != n || y.size() != n)
 		throw Error("block '" + name + "': " + std::to_string(ni) + " x " + std::to_string(nj) + " cells need " + std::to_string(n) + " nodes, but "
@@ -70,7 +72,9 @@ int Grid::addBlock(const Material& m, int ni, int nj, const std::vector<double>&
 		for (int i = 0; i <= ni; i++) {
 			const size_t k = size_t(j) * size_t(ni + 1) + size_t(i);
 			if (!std::isfinite(x[k]) || !std::isfinite(y[k]))
-				throw Error("block '" + name + "', node (" + std::to_string(i) + ", " + std::to_string(j) + "): coordinates are not finite; give finite numbers [m].");
+				throw Error(
+					"block '" + name + "', node (" + std::to_string(i) + ", " + std::to_string(j)
+					+ "): coordinates are not finite; give finite numbers [m].");
 			b->x[b->node(i, j)] = x[k];
 			b->y[b->node(i, j)] = y[k];
 		}
@@ -82,7 +86,9 @@ int Grid::addBlock(const Material& m, int ni, int nj, const std::vector<double>&
 const Block& Grid::checkedBlock(int block, const char* what) const
 {
 	if (block < 0 || block >= blocks())
-		throw Error(std::string(what) + ": there is no block " + std::to_string(block) + "; the grid has " + std::to_string(blocks()) + ", numbered from 0.");
+		throw Error(
+			std::string(what) + ": there is no block " + std::to_string(block) + "; the grid has " + std::to_string(blocks())
+			+ ", numbered from 0.");
 	return *blocks_[size_t(block)];
 }
 
@@ -237,8 +243,10 @@ void Grid::refuseHangingNodes() const
 					if (m == e.a || m == e.b) continue;
 					const double rx = o.x[size_t(m)] - ax, ry = o.y[size_t(m)] - ay, s = (rx * dx + ry * dy) / len2;
 					if (s <= joinTolerance || s >= 1 - joinTolerance || std::fabs(rx * dy - ry * dx) > joinTolerance * len2) continue;
-					throw Error("block '" + blocks_[size_t(e.block)]->options.name + "' touches another block, but " + nodeName(m)
-					            + " lies between two of its nodes. Blocks that touch must share their nodes: give both the same grid lines there, or leave a gap.");
+					throw Error(
+						"block '" + blocks_[size_t(e.block)]->options.name + "' touches another block, but " + nodeName(m)
+						+ " lies between two of its nodes. Blocks that touch must share their nodes: give both the same grid lines "
+					          "there, or leave a gap.");
 				}
 			}
 	}
@@ -368,7 +376,8 @@ int Grid::addGauge(double x, double y, int period)
 
 std::vector<Sample> Grid::probeLine(double x0, double y0, double x1, double y1, int n) const
 {
-	if (!std::isfinite(x0) || !std::isfinite(y0) || !std::isfinite(x1) || !std::isfinite(y1)) throw Error("probeLine: start and end must be finite points [m].");
+	if (!std::isfinite(x0) || !std::isfinite(y0) || !std::isfinite(x1) || !std::isfinite(y1))
+		throw Error("probeLine: start and end must be finite points [m].");
 	if (n < 1 || n > 1000000) throw Error("probeLine: n = " + std::to_string(n) + " points; it must be from 1 to 1000000.");
 	std::vector<Sample> out;
 	for (int k = 0; k < n; k++) {

@@ -37,7 +37,9 @@ namespace {
 
 	/// Nodes [lo,hi) between two rows of cells: force = (cells below) + (cells above), then v^(n+1/2), x^(n+1).
 	template <bool account>
-	void moveNodes(const Block& b, int j, int lo, int hi, const RowForces& below, const RowForces& above, double dt, double kick, double restSpeed, double* wx, double* wy)
+	void moveNodes(
+		const Block& b, int j, int lo, int hi, const RowForces& below, const RowForces& above, double dt, double kick, double restSpeed, double* wx,
+		double* wy)
 	{
 		const size_t n = b.node(0, j);
 		double* __restrict x        = b.x + n;
@@ -213,8 +215,9 @@ void sweepBand(Block& b, int band, const Step& s, Workspace& ws)
 			const Range q = b.awake[size_t(j) - 1];
 			if (b.account && !q.empty()) {
 				const bool seam = j - 1 == j0; // the row below the first cells is a seam or a side: its turn comes later
-				cellWork(b.energy + b.cell(0, j - 1), q.lo, q.hi, below, seam ? ws.zeros() : ws.meanVx(j - 1), seam ? ws.zeros() : ws.meanVy(j - 1),
-				         ws.meanVx(j), ws.meanVy(j), s.kick);
+				cellWork(
+					b.energy + b.cell(0, j - 1), q.lo, q.hi, below, seam ? ws.zeros() : ws.meanVx(j - 1),
+					seam ? ws.zeros() : ws.meanVy(j - 1), ws.meanVx(j), ws.meanVy(j), s.kick);
 			}
 		}
 		if (j == 0)

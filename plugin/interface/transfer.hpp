@@ -16,7 +16,8 @@ struct Motion {
 inline Motion motion(const Carried& c, const grid::OpenNodes& n)
 {
 	const size_t a = size_t(c.a), b = size_t(c.b);
-	return { (c.Na * n.x[a] + c.Nb * n.x[b]) + c.rx, (c.Na * n.y[a] + c.Nb * n.y[b]) + c.ry, c.Na * n.vx[a] + c.Nb * n.vx[b], c.Na * n.vy[a] + c.Nb * n.vy[b] };
+	return { (c.Na * n.x[a] + c.Nb * n.x[b]) + c.rx, (c.Na * n.y[a] + c.Nb * n.y[b]) + c.ry, c.Na * n.vx[a] + c.Nb * n.vx[b],
+		 c.Na * n.vy[a] + c.Nb * n.vy[b] };
 }
 
 /// Force [N/m] on a carried automaton to the ends of its edge.

@@ -62,6 +62,7 @@ enum class GridViscosity { none, scalar };
 
 /// The whole update. restArea [m2]; energy: internal energy at n-1/2 per rest volume [J/m3], read only where the equation of state heats.
 /// flows = false leaves out the radial return: the same bits wherever `trial` stays at or below the static yield stress.
+/// Long because it is one chain of values: what a part would take and give back is nearly all of them.
 template <YieldKind kind, GridViscosity visc, bool hourglass, EosKind eos, bool flows = true>
 inline CellForces updateCell(const CellConstants& c, const CellPattern& p, const CellPattern& v, double restArea, double energy, CellState& s)
 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Equation of state: pressure from the volume strain eps = J - 1 = Omega/Omega0 - 1 (negative in compression), and from the internal energy where the law heats.
-// With the kind as a template parameter for loops that must vectorise; without it for a single call. The laws are in laws/eos. Shared by automata and grid.
+// Equation of state: pressure from the volume strain eps = J - 1 = Omega/Omega0 - 1 (negative in compression), and from the internal energy where the law
+// heats. With the kind as a template parameter for loops that must vectorise; without it for a single call. The laws are in laws/eos. Shared by automata and
+// grid.
 #pragma once
 #include "laws/list.hpp"
 

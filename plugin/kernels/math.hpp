@@ -95,4 +95,12 @@ MCA_INLINE double fastPow(double x, double e)
 	const double power = fastExp(e * fastLog(max(x, 1e-300)));
 	return x > 1e-300 ? power : 0.;
 }
+
+/// Text as a number (FNV-1a); start: that of the text before it.
+constexpr uint64_t nameHash(const char* text, uint64_t start = 1469598103934665603ULL)
+{
+	for (; *text; text++)
+		start = (start ^ uint8_t(*text)) * 1099511628211ULL;
+	return start;
+}
 }

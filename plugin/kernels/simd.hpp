@@ -78,7 +78,8 @@ MCA_INLINE void gather4(const double* base, int stride, const int32_t* at, v8& a
 /// The other way: fields 0-3 of eight records in a row.
 MCA_INLINE void scatter4(double* base, int stride, v8 a, v8 b, v8 c, v8 d)
 {
-	const v8 ab = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14), cd = __builtin_shufflevector(c, d, 0, 8, 2, 10, 4, 12, 6, 14); // a0 b0 a2 b2 | a4 b4 a6 b6
+	const v8 ab = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14),
+		 cd = __builtin_shufflevector(c, d, 0, 8, 2, 10, 4, 12, 6, 14); // a0 b0 a2 b2 | a4 b4 a6 b6
 	const v8 AB = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15), CD = __builtin_shufflevector(c, d, 1, 9, 3, 11, 5, 13, 7, 15); // the odd ones
 	const v8 r02 = __builtin_shufflevector(ab, cd, 0, 1, 8, 9, 2, 3, 10, 11), r46 = __builtin_shufflevector(ab, cd, 4, 5, 12, 13, 6, 7, 14, 15);
 	const v8 r13 = __builtin_shufflevector(AB, CD, 0, 1, 8, 9, 2, 3, 10, 11), r57 = __builtin_shufflevector(AB, CD, 4, 5, 12, 13, 6, 7, 14, 15);

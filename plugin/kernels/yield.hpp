@@ -12,7 +12,10 @@ struct Return {
 };
 
 /// Static yield stress [Pa] and its slope dY/d eps_p [Pa] at fixed temperature.
-template <YieldKind kind> MCA_INLINE StaticYield staticYield(const Yield& y, double eqps, double temperature) { return LawOf<kind>::staticYield(y, eqps, temperature); }
+template <YieldKind kind> MCA_INLINE StaticYield staticYield(const Yield& y, double eqps, double temperature)
+{
+	return LawOf<kind>::staticYield(y, eqps, temperature);
+}
 
 /// Yield stress [Pa] at plastic strain [-], strain rate [1/s] and temperature [K].
 inline double flowStress(const Yield& y, double eqps, double rate, double temperature)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Entry point of a Python extension (MCA_MODULE, _yade_mca for the plugin itself): guard first, then the new classes. It is written out because BOOST_PYTHON_MODULE returns a module
-// with an error set when its body throws, which Python reports as an opaque SystemError instead of the ImportError.
+// Entry point of a Python extension (MCA_MODULE, _yade_mca for the plugin itself): guard first, then the new classes. It is written out because
+// BOOST_PYTHON_MODULE returns a module with an error set when its body throws, which Python reports as an opaque SystemError instead of the ImportError.
 #include <lib/serialization/Serializable.hpp>
 #include <sdk/guard.hpp>
 

@@ -18,7 +18,8 @@ namespace sdk __attribute__((visibility("hidden"))) {
 		py::list            result;
 		for (const NewClass& c : newClasses()) {
 			if (omega.isInheritingFrom_recursive(c.name, "Serializable"))
-				throw std::runtime_error(string("a class named ") + c.name + " is loaded already; is another copy of the plugin in this process?");
+				throw std::runtime_error(
+					string("a class named ") + c.name + " is loaded already; is another copy of the plugin in this process?");
 			ClassFactory::instance().registerFactorable(c.name, c.create, c.createShared, c.createPure);
 			names.push_back(c.name);
 			fileAndNames.push_back(c.name);
@@ -30,7 +31,8 @@ namespace sdk __attribute__((visibility("hidden"))) {
 		// buildDynlibDatabase only prints what goes wrong in Python registration
 		const py::object wrapper = py::import("yade.wrapper");
 		for (const string& name : names)
-			if (!PyObject_HasAttrString(wrapper.ptr(), name.c_str())) throw std::runtime_error("YADE did not take in class " + name + "; see its message above");
+			if (!PyObject_HasAttrString(wrapper.ptr(), name.c_str()))
+				throw std::runtime_error("YADE did not take in class " + name + "; see its message above");
 		return result;
 	}
 } // namespace sdk

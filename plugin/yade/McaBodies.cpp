@@ -46,13 +46,18 @@ void checkMotion(const Body& b)
 	const State& s = *b.state;
 	const auto&  x = s.se3.position;
 	const Real   reach = 2e9 * static_cast<const Sphere*>(b.shape.get())->radius;
-	if (!(s.vel.cwiseAbs().maxCoeff() < 1e100 && s.angVel.cwiseAbs().maxCoeff() < 1e100)) refuseBody(b, "vel or angVel is not finite; give finite numbers below 1e100 [m/s], [rad/s].");
+	if (!(s.vel.cwiseAbs().maxCoeff() < 1e100 && s.angVel.cwiseAbs().maxCoeff() < 1e100))
+		refuseBody(b, "vel or angVel is not finite; give finite numbers below 1e100 [m/s], [rad/s].");
 	if (!(std::fabs(s.se3.orientation.coeffs().squaredNorm() - 1.) < 0.1)) refuseBody(b, "ori is no rotation; it must be a quaternion of norm 1.");
 	if (!x.allFinite() || !s.vel.allFinite() || !s.angVel.allFinite() || !s.se3.orientation.coeffs().allFinite())
 		refuseBody(b, "position, velocity, angular velocity or orientation is not finite; give finite numbers.");
 	if (s.vel[2] != 0 || s.angVel[0] != 0 || s.angVel[1] != 0)
-		refuseBody(b, "velocity z = " + numberText(s.vel[2]) + " m/s, angular velocity x, y = " + numberText(s.angVel[0]) + ", " + numberText(s.angVel[1]) + " rad/s; in plane strain (x, y) they must be 0.");
-	if (!(std::fabs(x[0]) < reach && std::fabs(x[1]) < reach)) refuseBody(b, "position (" + numberText(x[0]) + ", " + numberText(x[1]) + ") m must be within 1e9 diameters of the origin.");
+		refuseBody(
+			b,
+			"velocity z = " + numberText(s.vel[2]) + " m/s, angular velocity x, y = " + numberText(s.angVel[0]) + ", " + numberText(s.angVel[1])
+				+ " rad/s; in plane strain (x, y) they must be 0.");
+	if (!(std::fabs(x[0]) < reach && std::fabs(x[1]) < reach))
+		refuseBody(b, "position (" + numberText(x[0]) + ", " + numberText(x[1]) + ") m must be within 1e9 diameters of the origin.");
 }
 
 size_t materialIndex(const McaMat* m, vector<const McaMat*>& known, vector<mca::Material>& materials)
@@ -69,7 +74,9 @@ void checkNumbers(const Scene& scene)
 	const auto& bodies = scene.bodies->body;
 	for (size_t k = 0; k < bodies.size(); k++)
 		if (bodies[k] && (bodies[k]->id < 0 || size_t(bodies[k]->id) != k))
-			throw mca::Error("body " + std::to_string(bodies[k]->id) + " stands in the place of body " + std::to_string(k) + "; the saved scene is damaged or was edited.");
+			throw mca::Error(
+				"body " + std::to_string(bodies[k]->id) + " stands in the place of body " + std::to_string(k)
+				+ "; the saved scene is damaged or was edited.");
 }
 
 McaBodies::McaBodies(const Scene& scene, int seed)
@@ -98,8 +105,11 @@ void McaBodies::add(const Body& b, int seed)
 	a.weight        = a.mass / full;
 	if (std::fabs(a.weight - 1.) < 1e-9) a.weight = 1.;
 	if (a.mass > 0 && (a.weight < 0.05 || a.weight > 2))
-		throw mca::Error("body " + std::to_string(b.id) + ": mass " + std::to_string(a.mass) + " kg/m is " + std::to_string(a.weight) + " of the full cell (" + std::to_string(full)
-		                 + " kg/m); it must be 0.05 to 2. In plane strain the mass is density times area per 1 m of thickness: make the bodies with packings.addBodies.");
+		throw mca::Error(
+			"body " + std::to_string(b.id) + ": mass " + std::to_string(a.mass) + " kg/m is " + std::to_string(a.weight) + " of the full cell ("
+			+ std::to_string(full)
+			+ " kg/m); it must be 0.05 to 2. In plane strain the mass is density times area per 1 m of thickness: make the bodies with "
+		          "packings.addBodies.");
 	if (ms->strength == 0) ms->strength = drawStrength(*m, seed, b.id);
 	a.strength = ms->strength;
 	a.eqps     = ms->plasticStrain;

@@ -2,7 +2,7 @@
 #include "McaEngine.hpp"
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
-#include "McaDensity.hpp"
+#include "McaLaw.hpp"
 #include "McaGridEngine.hpp"
 #include "McaLook.hpp"
 #include "McaTimeStepper.hpp"
@@ -43,7 +43,10 @@ void McaEngine::takeOptions(Scene* scene)
 	const auto now  = solverOptions(scene);
 	auto&      mine = solver->options;
 	const auto kept = [](const char* name, bool same) {
-		if (!same) throw mca::Error(string("McaEngine: ") + name + " was changed after the bodies were gathered, when it is read; set it back, or make a new engine with new bodies.");
+		if (!same)
+			throw mca::Error(
+				string("McaEngine: ") + name
+				+ " was changed after the bodies were gathered, when it is read; set it back, or make a new engine with new bodies.");
 	};
 	kept("volumeRule", now.volumeRule == mine.volumeRule), kept("linkFactor", now.linkFactor == mine.linkFactor);
 	kept("sleeping", now.sleeping == mine.sleeping), kept("contacts", now.contacts == mine.contacts);
@@ -54,12 +57,15 @@ void McaEngine::takeOptions(Scene* scene)
 /// Other engines of the scene that would move automata, too, or expect that this one does what it does not.
 void McaEngine::checkScene(Scene* scene) const
 {
-	if (coupled && gravity != Vector2r::Zero()) throw mca::Error("McaEngine: gravity acts on automata only, and the grid that they are tied to would not fall; set gravity = (0, 0).");
+	if (coupled && gravity != Vector2r::Zero())
+		throw mca::Error("McaEngine: gravity acts on automata only, and the grid that they are tied to would not fall; set gravity = (0, 0).");
 	const Engine* newton = nullptr;
 	for (const auto& e : scene->engines) {
 		if (e->dead || e.get() == this) continue;
-		if (dynamic_cast<const McaEngine*>(e.get())) throw mca::Error("McaEngine: there are two in O.engines, and each would move all automata; leave one.");
-		if (dynamic_cast<const McaDensity*>(e.get())) throw mca::Error("O.engines has McaEngine and McaDensity; an automaton can be moved by one of them only.");
+		if (dynamic_cast<const McaEngine*>(e.get()))
+			throw mca::Error("McaEngine: there are two in O.engines, and each would move all automata; leave one.");
+		if (dynamic_cast<const McaLaw*>(e.get()))
+			throw mca::Error("O.engines has McaEngine and McaLaw; an automaton can be moved by one of them only.");
 		if (e->getClassName() == "NewtonIntegrator") newton = e.get();
 	}
 	if (!newton || order.empty()) return;
@@ -78,8 +84,9 @@ void McaEngine::checkScene(Scene* scene) const
 	PyGILState_Release(state);
 	for (const auto& b : bodies)
 		if (mask <= 0 || (b->groupMask & mask))
-			throw mca::Error("McaEngine: NewtonIntegrator (mask " + std::to_string(mask) + ") would move body " + std::to_string(b->id) + " (mask " + std::to_string(b->groupMask)
-			                 + ") a second time; give it a mask that no automaton has, or leave it out.");
+			throw mca::Error(
+				"McaEngine: NewtonIntegrator (mask " + std::to_string(mask) + ") would move body " + std::to_string(b->id) + " (mask "
+				+ std::to_string(b->groupMask) + ") a second time; give it a mask that no automaton has, or leave it out.");
 	if (g != Vector3r::Zero() && gravity == Vector2r::Zero() && !warnedGravity) {
 		warnedGravity = true;
 		LOG_WARN("McaEngine: the gravity of NewtonIntegrator acts on the bodies of its mask only, not on automata; theirs is McaEngine.gravity.");
@@ -90,7 +97,7 @@ void McaEngine::readExternal(Scene* scene)
 {
 	Store& S = solver->store;
 	if (!readForces && gravity == Vector2r::Zero()) {
-		if (!S.ex.empty()) solver->clearForces();
+		if (!S.outsideX.empty()) solver->clearForces();
 		return;
 	}
 	solver->clearForces();

@@ -51,43 +51,68 @@ public:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(McaEngine, McaSolverEngine,
-		"Movable cellular automata in plane strain (x, y) on flat arrays: gathers all bodies whose material is :yref:`McaMat` and shape :yref:`Sphere`, keeps its own pairs and integrates them. "
-		"Whenever a script can look - the loop has stopped, a PyRunner or recorder is due, a file is written - the bodies hold what the engine holds, and what the script then changes counts from the next "
-		"step on: positions, velocities, blocked degrees of freedom, masks, materials and their constants, plastic strains, temperatures, strengths, bodies added and erased. What cannot be taken over "
-		"(mass, radius, results such as the pressure) is refused before anything moves. While the loop runs in the background, field() and the like read the present state; bodies are those of the last look. "
+		"Movable cellular automata in plane strain (x, y) on flat arrays: gathers all bodies whose material is :yref:`McaMat` and shape "
+		":yref:`Sphere`, keeps its own pairs and integrates them. "
+		"Whenever a script can look - the loop has stopped, a PyRunner or recorder is due, a file is written - the bodies hold what the engine "
+		"holds, and what the script then changes counts from the next "
+		"step on: positions, velocities, blocked degrees of freedom, masks, materials and their constants, plastic strains, temperatures, strengths, "
+		"bodies added and erased. What cannot be taken over "
+		"(mass, radius, results such as the pressure) is refused before anything moves. While the loop runs in the background, field() and the like "
+		"read the present state; bodies are those of the last look. "
 		"Masses are per 1 m of thickness: density times the area an automaton stands for (packings.addBodies sets them). "
-		"Bodies with different masks do not link at the start; they meet as contacts. Blocked degrees of freedom keep their velocity. Walls, boxes, facets and clumps are refused (the law in YADE's own loop has them).",
-		((string, volumeRule, "affine", , "'affine' (default: J = det F of the links, exact in any homogeneous deformation), 'inversePower' (density from the mean of (d/r)^2) or 'meanDistance' (as published; its lattice buckles under strong plastic compression). Read when bodies are gathered; a later change is refused"))
-		((Real, linkFactor, 1.2, , "bodies closer than this many diameters are linked at the start [-], 1.02 ... 1.5. Read when bodies are gathered; a later change is refused"))
+		"Bodies with different masks do not link at the start; they meet as contacts. Blocked degrees of freedom keep their velocity. Walls, boxes, "
+		"facets and clumps are refused (the law in YADE's own loop has them).",
+		((string, volumeRule, "affine", , "'affine' (default: J = det F of the links, exact in any homogeneous deformation), 'inversePower' (density "
+		    "from the mean of (d/r)^2) or 'meanDistance' (as published; its lattice buckles under strong plastic compression). Read when bodies are "
+		    "gathered; a later change is refused"))
+		((Real, linkFactor, 1.2, , "bodies closer than this many diameters are linked at the start [-], 1.02 ... 1.5. Read when bodies are gathered; "
+		    "a later change is refused"))
 		((Real, skin, 0.4, , "range of the contact search beyond touching, in diameters [-], 0.05 ... 1. Read at every look"))
-		((Real, volumeFilter, 0.1, , "rate at which stripes of volume (alternate rows) fade in flowing material, in c0/d [-]; 0 ... 1, 0: off. They cost no force, so nothing else takes them away; affine rule. Read at every look"))
-		((bool, sleeping, true, , "leave out regions that nothing has reached; changes no result. Read when bodies are gathered; a later change is refused"))
+		((Real, volumeFilter, 0.1, , "rate at which stripes of volume (alternate rows) fade in flowing material, in c0/d [-]; 0 ... 1, 0: off. They "
+		    "cost no force, so nothing else takes them away; affine rule. Read at every look"))
+		((bool, sleeping, true, , "leave out regions that nothing has reached; changes no result. Read when bodies are gathered; a later change is "
+		    "refused"))
 		((bool, contacts, true, , "search for contacts. Read when bodies are gathered; a later change is refused"))
 		((bool, account, false, , "keep the energy account (also on when O.trackEnergy). Read in every step"))
-		((bool, adaptive, true, , "set O.dt in every step to dtFactor times the largest stable one, growing at most 10 % a step; otherwise O.dt is checked only. Read in every step"))
+		((bool, adaptive, true, , "set O.dt in every step to dtFactor times the largest stable one, growing at most 10 % a step; otherwise O.dt is "
+		    "checked only. Read in every step"))
 		((Real, dtFactor, 0.4, , "share of the largest stable time step [-], 1e-6 ... 1. Read in every step"))
-		((int, writePeriod, 0, , "write to the bodies every so many steps even if nobody looks; 0 (default): only when somebody can look. Read in every step"))
+		((int, writePeriod, 0, , "write to the bodies every so many steps even if nobody looks; 0 (default): only when somebody can look. Read in "
+		    "every step"))
 		((int, seed, 1, , "seed of the scattered strengths; read when a body is taken over for the first time"))
 		((bool, readForces, false, , "add the forces that other engines put on the bodies (O.forces). Read in every step"))
-		((Vector2r, gravity, Vector2r::Zero(), , "acceleration of all automata [m/s2]; refused in a scene coupled to a grid, which has none. Read in every step"))
+		((Vector2r, gravity, Vector2r::Zero(), , "acceleration of all automata [m/s2]; refused in a scene coupled to a grid, which has none. Read in "
+		    "every step"))
 		((long, lastWritten, -1, Attr::readonly|Attr::noSave, "step of the last write to the bodies"))
 		((bool, forcesReady, false, Attr::hidden, "forces of this step are computed; integration has yet to follow"))
 		((bool, bodiesSaved, false, Attr::hidden, "the bodies saved with it hold what it holds, so that differences are a script's"))
 		((sdk::Blob, state, , Attr::hidden, "state of the solver"))
 		((vector<int>, order, , Attr::hidden, "body ids, ascending"))
-		((vector<Vector3r>, viscous, , Attr::hidden, "of setViscous(), kept for the next time that bodies are gathered: id [-] and coefficients along x and y [kg/(m s)]"))
+		((vector<Vector3r>, viscous, , Attr::hidden, "of setViscous(), kept for the next time that bodies are gathered: id [-] and coefficients "
+		    "along x and y [kg/(m s)]"))
 		,
 		timingDeltas = shared_ptr<TimingDeltas>(new TimingDeltas);
 		,
-		.def("sync", &McaEngine::writeBack, "Write positions, velocities and states to the bodies of its scene now. Needed only while the loop runs in the background; at any other time they are up to date. Raises RuntimeError when its scene is gone.")
-		.def("reload", &McaEngine::reload, "Take over in the next step what the script has changed in the bodies while the loop runs in the background; at any other time that happens by itself. Raises RuntimeError when its scene is gone.")
-		.def("field", &McaEngine::fieldByName, (py::arg("name")), "Copy of one quantity of all automata now, in the order of `ids`, numpy (N,): 'x', 'y' [m], 'vx', 'vy' [m/s], 'omega' [rad/s], 'angle' [rad], 'mass' [kg/m], 'pressure' [Pa], 'volumeRatio' [-], 'equivalentStress' [Pa], 'plasticStrain' [-], 'temperature' [K], 'stressZZ' [Pa], 'fx', 'fy' [N/m], 'links' [-], 'brokenLinks' [-], 'strength' [-], 'diameter' [m], 'weight' [-], 'material' [-]. What a script has changed in the bodies counts already. Raises RuntimeError for another name.")
-		.def("fields", &McaEngine::fieldsByName, (py::arg("names")), "Copies of several quantities of one moment, dict of name -> numpy (N,) in the order of `ids`; names: a list of those that field() takes, and 'ids' (int). Bodies and engine are compared once, not once for each name. Raises RuntimeError for another name, TypeError when names is no list or tuple of texts.")
+		.def("sync", &McaEngine::writeBack, "Write positions, velocities and states to the bodies of its scene now. Needed only while the loop runs "
+		    "in the background; at any other time they are up to date. Raises RuntimeError when its scene is gone.")
+		.def("reload", &McaEngine::reload, "Take over in the next step what the script has changed in the bodies while the loop runs in the "
+		    "background; at any other time that happens by itself. Raises RuntimeError when its scene is gone.")
+		.def("field", &McaEngine::fieldByName, (py::arg("name")), "Copy of one quantity of all automata now, in the order of `ids`, numpy (N,): 'x', "
+		    "'y' [m], 'vx', 'vy' [m/s], 'omega' [rad/s], 'angle' [rad], 'mass' [kg/m], 'pressure' [Pa], 'volumeRatio' [-], 'equivalentStress' [Pa], "
+		    "'plasticStrain' [-], 'temperature' [K], 'stressZZ' [Pa], 'fx', 'fy' [N/m], 'links' [-], 'brokenLinks' [-], 'strength' [-], 'diameter' "
+		    "[m], 'weight' [-], 'material' [-]. What a script has changed in the bodies counts already. Raises RuntimeError for another name.")
+		.def("fields", &McaEngine::fieldsByName, (py::arg("names")), "Copies of several quantities of one moment, dict of name -> numpy (N,) in the "
+		    "order of `ids`; names: a list of those that field() takes, and 'ids' (int). Bodies and engine are compared once, not once for each "
+		    "name. Raises RuntimeError for another name, TypeError when names is no list or tuple of texts.")
 		.add_property("ids", &McaEngine::identifiers, "Ids of the bodies, ascending; numpy (N,) int.")
-		.def("energies", &McaEngine::energies, "Energies [J/m] now; dissipations since the start when the account is kept. 'bookedError': kinetic energy minus all work booked (round-off); 'halfStep': what 'kinetic', 'external' and 'viscous' change in the half step between the stresses and the velocities; 'total': independent sum at the time of the stresses.")
-		.def("counters", &McaEngine::countersNow, "Work done so far: steps, searches, sorts, blockSteps (blocks of 64 computed), blocks, brokenLinks, clamped (equation of state beyond its clamp), deepest (smallest distance / rest distance), contacts, awake.")
+		.def("energies", &McaEngine::energies, "Energies [J/m] now; dissipations since the start when the account is kept. 'bookedError': kinetic "
+		    "energy minus all work booked (round-off); 'halfStep': what 'kinetic', 'external' and 'viscous' change in the half step between the "
+		    "stresses and the velocities; 'total': independent sum at the time of the stresses.")
+		.def("counters", &McaEngine::countersNow, "Work done so far: steps, searches, sorts, blockSteps (blocks of 64 computed), blocks, "
+		    "brokenLinks, clamped (equation of state beyond its clamp), deepest (smallest distance / rest distance), contacts, awake.")
 		.def("links", &McaEngine::linkList, "Pairs of body ids whose link holds, list of (id1, id2).")
-		.def("setViscous", &McaEngine::setViscous, (py::arg("ids"), py::arg("normal")), "Viscous (transmitting) boundary of Lysmer and Kuhlemeyer (1969) on these bodies: traction -rho cP v_n n - rho cS v_t on their outer width; normal is (1,0), (-1,0), (0,1) or (0,-1).")
+		.def("setViscous", &McaEngine::setViscous, (py::arg("ids"), py::arg("normal")), "Viscous (transmitting) boundary of Lysmer and Kuhlemeyer "
+		    "(1969) on these bodies: traction -rho cP v_n n - rho cS v_t on their outer width; normal is (1,0), (-1,0), (0,1) or (0,-1).")
 		.def("phases", &McaEngine::phases, "Time spent per phase [ns] while O.timingEnabled.")
 		.add_property("count", &McaEngine::automataCount, "Number of automata.")
 		.add_property("momentum", &McaEngine::momentum, "Momentum of all automata [N s/m].")
@@ -130,6 +155,7 @@ private:
 	void              settleIn(Scene* scene);
 	bool              isMine(int id) const { return solver && solver->indexOf(id) >= 0; }
 	void              gather(Scene* scene);
+	void checkBodies(const Scene&) const;
 	void              bind(Scene* scene);
 	void              adoptChanges(Scene* scene);
 	vector<Change>    changes(bool& rebuild);

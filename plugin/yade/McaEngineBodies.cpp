@@ -16,15 +16,27 @@ namespace {
 	/// A body that an engine takes for the first time brings no results of another one: they could not go on.
 	void checkFresh(const Body& b, const McaState& s)
 	{
-		if (s.law) refuseBody(b, "McaDensity has moved it, with stresses that cannot be taken over; go on with the law in YADE's own loop, or make new bodies.");
+		if (s.law)
+			refuseBody(
+				b, "McaLaw has moved it, with stresses that cannot be taken over; go on with the law in YADE's own loop, or make new bodies.");
 		const auto within = [&](const char* name, Real v, Real lo, Real hi, const char* unit) {
-			if (!(v >= lo && v <= hi)) refuseBody(b, string("state.") + name + " = " + numberText(v) + unit + " must be from " + numberText(lo) + " to " + numberText(hi) + ".");
+			if (!(v >= lo && v <= hi))
+				refuseBody(
+					b,
+					string("state.") + name + " = " + numberText(v) + unit + " must be from " + numberText(lo) + " to " + numberText(hi)
+						+ ".");
 		};
-		within("plasticStrain", s.plasticStrain, 0, 1e6, ""), within("temperature", s.temperature, 0, 1e9, " K"), within("strength", s.strength, 0, 1e9, "");
+		within("plasticStrain", s.plasticStrain, 0, 1e6, ""), within("temperature", s.temperature, 0, 1e9, " K"),
+			within("strength", s.strength, 0, 1e9, "");
 		if (s.brokenLinks != 0 || s.pressure != 0 || s.volumeRatio != 1 || s.equivalentStress != 0 || s.stressZZ != 0 || s.dissipated != 0)
-			refuseBody(b, "its state holds results (brokenLinks = " + std::to_string(s.brokenLinks) + ", pressure = " + numberText(s.pressure) + " Pa, stressZZ = " + numberText(s.stressZZ) + " Pa, dissipated = " + numberText(s.dissipated) + " J/kg, volumeRatio = " + numberText(s.volumeRatio)
-			               + ", equivalentStress = " + numberText(s.equivalentStress) + " Pa): broken links would heal and stress be dropped. An engine starts from rest: keep the engine that made them in O.engines, or give the body the state of "
-			                 "rest with packings.resetStates(ids).");
+			refuseBody(
+				b,
+				"its state holds results (brokenLinks = " + std::to_string(s.brokenLinks) + ", pressure = " + numberText(s.pressure)
+					+ " Pa, stressZZ = " + numberText(s.stressZZ) + " Pa, dissipated = " + numberText(s.dissipated)
+					+ " J/kg, volumeRatio = " + numberText(s.volumeRatio) + ", equivalentStress = " + numberText(s.equivalentStress)
+					+ " Pa): broken links would heal and stress be dropped. An engine starts from rest: keep the engine that made them in "
+			                  "O.engines, or give the body the state of "
+					  "rest with packings.resetStates(ids).");
 	}
 }
 
@@ -38,8 +50,11 @@ shared_ptr<Scene> McaEngine::myScene(const char* call) const
 {
 	const auto present = Omega::instance().getScene();
 	if (solver && !bodies.empty() && home.lock() != present)
-		throw mca::Error(string("McaEngine.") + call + ": the bodies of this engine are those of another scene, which is gone (O.reset, O.load) or not the present one (O.switchToScene); take the engine of the present scene from "
-		                 "O.engines, or switch back first.");
+		throw mca::Error(
+			string("McaEngine.") + call
+			+ ": the bodies of this engine are those of another scene, which is gone (O.reset, O.load) or not the present one (O.switchToScene); "
+		          "take the engine of the present scene from "
+			  "O.engines, or switch back first.");
 	return present;
 }
 
@@ -68,10 +83,16 @@ void McaEngine::bind(Scene* scene)
 	checkNumbers(*scene);
 	vector<shared_ptr<Body>> found;
 	for (int id : order) {
-		if (solver->indexOf(id) < 0) throw mca::Error("McaEngine: body " + std::to_string(id) + " stands in the saved engine's list, but not in its state; the file is damaged or was changed.");
+		if (solver->indexOf(id) < 0)
+			throw mca::Error(
+				"McaEngine: body " + std::to_string(id)
+				+ " stands in the saved engine's list, but not in its state; the file is damaged or was changed.");
 		found.push_back(scene->bodies->exists(id) ? scene->bodies->body[size_t(id)] : nullptr); // erased since it was loaded
 		if (found.back() && (!isAutomaton(found.back()) || !castTo<McaState>(found.back()->state.get())))
-			throw mca::Error("McaEngine: the saved engine moves body " + std::to_string(id) + ", which is no automaton (material McaMat, shape Sphere, state McaState); the file is damaged, or the body was changed since it was loaded.");
+			throw mca::Error(
+				"McaEngine: the saved engine moves body " + std::to_string(id)
+				+ ", which is no automaton (material McaMat, shape Sphere, state McaState); the file is damaged, or the body was changed since "
+			          "it was loaded.");
 	}
 	known.assign(solver->store.materials.size(), nullptr);
 	const Store& S = solver->store;
@@ -109,26 +130,42 @@ void McaEngine::takeResults(size_t q)
 	was.pos = Vector3r(S.x[i], S.y[i], s.se3.position[2]), was.vel = Vector3r(S.vx[i], S.vy[i], 0), was.angVel = Vector3r(0, 0, S.omega[i]);
 	was.angle = S.angle[i], was.ori = Quaternionr(AngleAxisr(was.angle, Vector3r::UnitZ()));
 	was.blocked = ~0u; // to be compared with what the solver has
-	was.pressure = S.P[i], was.volumeRatio = S.J[i], was.plasticStrain = S.eqps[i], was.temperature = S.temperature[i], was.stressZZ = S.szz[i], was.dissipated = S.heat.empty() ? 0. : S.heat[i];
+	was.pressure = S.P[i], was.volumeRatio = S.J[i], was.plasticStrain = S.eqps[i], was.temperature = S.temperature[i], was.stressZZ = S.szz[i],
+	was.dissipated       = S.heat.empty() ? 0. : S.heat[i];
 	was.equivalentStress = s.equivalentStress, was.links = s.links, was.brokenLinks = s.brokenLinks; // follow from the rest
 }
 
-void McaEngine::gather(Scene* scene)
+/// Throws Error when a body cannot be an automaton, or would be passed through.
+void McaEngine::checkBodies(const Scene& scene) const
 {
-	for (const auto& b : scene->bodies->body) {
+	for (const auto& b : scene.bodies->body) {
 		if (!b) continue;
 		const bool automaton = b->material && castTo<McaMat>(b->material.get()) && b->shape && castTo<Sphere>(b->shape.get());
 		if (!automaton) {
 			const string shape = b->shape ? b->shape->getClassName() : "";
 			if (!readForces && b->groupMask != 0 && (shape == "Wall" || shape == "Box" || shape == "Facet"))
-				throw mca::Error("McaEngine: body " + std::to_string(b->id) + " is a " + shape + ", which automata would pass through. Use the law in YADE's own loop (scenes.law2Engines), hold automata by blockedDOFs, or give a body "
-				                 "that is only looked at mask=0.");
+				throw mca::Error(
+					"McaEngine: body " + std::to_string(b->id) + " is a " + shape
+					+ ", which automata would pass through. Use the law in YADE's own loop (scenes.law2Engines), hold automata by "
+				          "blockedDOFs, or give a body "
+					  "that is only looked at mask=0.");
 			continue;
 		}
-		if (b->clumpId != Body::ID_NONE) throw mca::Error("McaEngine: body " + std::to_string(b->id) + " belongs to a clump, whose motion automata cannot follow; append it without O.bodies.appendClumped.");
-		if (!b->state || !castTo<McaState>(b->state.get())) throw mca::Error("McaEngine: body " + std::to_string(b->id) + " has material McaMat but not a McaState; make its state with material.newAssocState().");
+		if (b->clumpId != Body::ID_NONE)
+			throw mca::Error(
+				"McaEngine: body " + std::to_string(b->id)
+				+ " belongs to a clump, whose motion automata cannot follow; append it without O.bodies.appendClumped.");
+		if (!b->state || !castTo<McaState>(b->state.get()))
+			throw mca::Error(
+				"McaEngine: body " + std::to_string(b->id)
+				+ " has material McaMat but not a McaState; make its state with material.newAssocState().");
 		checkMotion(*b);
 	}
+}
+
+void McaEngine::gather(Scene* scene)
+{
+	checkBodies(*scene);
 	std::unordered_set<const Body*> mine;
 	for (const auto& b : bodies)
 		if (b) mine.insert(b.get());
@@ -145,13 +182,18 @@ void McaEngine::gather(Scene* scene)
 	auto fresh = shared_ptr<Solver>(new Solver);
 	// no automaton goes on: a new start, as in the next case of a sweep
 	const bool goesOn = solver && std::any_of(now.automata.begin(), now.automata.end(), [](const Automaton& a) { return !a.isNew; });
-	if (!goesOn && solver && carriesRows()) throw mca::Error("McaEngine: all automata are gone, and with them rows that are tied to a grid; they cannot be erased. Make a new McaEngine, grid and coupler for the new bodies.");
+	if (!goesOn && solver && carriesRows())
+		throw mca::Error("McaEngine: all automata are gone, and with them rows that are tied to a grid; they cannot be erased. Make a new McaEngine, "
+		                 "grid and coupler for the new bodies.");
 	fresh->build(now.automata, now.materials, solverOptions(scene), goesOn ? solver.get() : nullptr);
 	std::unordered_set<int> newIds;
 	for (auto& a : now.automata)
 		if (a.isNew) newIds.insert(a.id);
 	if (solver) // the dampers of bodies that are gone go with them
-		viscous.erase(std::remove_if(viscous.begin(), viscous.end(), [&](const Vector3r& v) { return fresh->indexOf(int(v[0])) < 0 || newIds.count(int(v[0])); }), viscous.end());
+		viscous.erase(
+			std::remove_if(
+				viscous.begin(), viscous.end(), [&](const Vector3r& v) { return fresh->indexOf(int(v[0])) < 0 || newIds.count(int(v[0])); }),
+			viscous.end());
 	solver      = fresh;
 	order       = now.ids;
 	bodies      = list;
@@ -179,8 +221,11 @@ void McaEngine::ensureBuilt(Scene* scene)
 	if (lost >= 0) {
 		const int id = lost;
 		lost         = -1;
-		throw mca::Error("McaEngine: body " + std::to_string(id) + " was changed by a script while the loop ran in the background, when the bodies are not up to date; the change is lost. Pause first (O.pause()), or call reload() of the "
-		                 "engine right after the change. The next step goes on without it.");
+		throw mca::Error(
+			"McaEngine: body " + std::to_string(id)
+			+ " was changed by a script while the loop ran in the background, when the bodies are not up to date; the change is lost. Pause first "
+		          "(O.pause()), or call reload() of the "
+			  "engine right after the change. The next step goes on without it.");
 	}
 	if (!solver) {
 		gather(scene);

@@ -28,14 +28,18 @@ namespace {
 		uint64_t d = 0;
 		for (size_t k = 0; k < sizeof(T); k += sizeof(T) % 8 ? 4 : 8) {
 			uint64_t x = 0, y = 0;
-			std::memcpy(&x, reinterpret_cast<const char*>(&a) + k, sizeof(T) % 8 ? 4 : 8), std::memcpy(&y, reinterpret_cast<const char*>(&b) + k, sizeof(T) % 8 ? 4 : 8);
+			std::memcpy(&x, reinterpret_cast<const char*>(&a) + k, sizeof(T) % 8 ? 4 : 8),
+				std::memcpy(&y, reinterpret_cast<const char*>(&b) + k, sizeof(T) % 8 ? 4 : 8);
 			d |= x ^ y;
 		}
 		return d;
 	}
 	template <class T> void soon(const T& what) { __builtin_prefetch(&what); }
 	constexpr size_t ahead = 6; ///< bodies whose memory is asked for before it is needed
-	void             soon(const McaState& s) { soon(s.se3), soon(s.vel), soon(s.angVel), soon(s.inertia[2]), soon(s.blockedDOFs), soon(s.temperature), soon(s.brokenLinks); }
+	void                    soon(const McaState& s)
+	{
+		soon(s.se3), soon(s.vel), soon(s.angVel), soon(s.inertia[2]), soon(s.blockedDOFs), soon(s.temperature), soon(s.brokenLinks);
+	}
 } // namespace
 
 /// Its bits are those that body and engine had when they were last the same. Most bodies are, so nothing else is looked at then.
@@ -45,10 +49,13 @@ bool McaEngine::untouched(size_t q) const
 	const Body& b   = *bodies[q];
 	if (b.state.get() != was.state.get() || b.shape.get() != was.shape.get() || b.material.get() != was.material) return false;
 	const auto& s = static_cast<const McaState&>(*was.state);
-	uint64_t    d = unlike(s.se3.position, was.pos) | unlike(s.se3.orientation.coeffs(), was.ori.coeffs()) | unlike(s.vel, was.vel) | unlike(s.angVel, was.angVel);
+	uint64_t    d =
+		unlike(s.se3.position, was.pos) | unlike(s.se3.orientation.coeffs(), was.ori.coeffs()) | unlike(s.vel, was.vel) | unlike(s.angVel, was.angVel);
 	d |= unlike(s.mass, was.mass) | unlike(s.inertia[2], was.inertia) | unlike(s.blockedDOFs, was.blocked) | unlike(b.groupMask, was.mask);
-	d |= unlike(s.pressure, was.pressure) | unlike(s.volumeRatio, was.volumeRatio) | unlike(s.equivalentStress, was.equivalentStress) | unlike(s.plasticStrain, was.plasticStrain);
-	d |= unlike(s.temperature, was.temperature) | unlike(s.stressZZ, was.stressZZ) | unlike(s.dissipated, was.dissipated) | unlike(s.strength, was.strength);
+	d |= unlike(s.pressure, was.pressure) | unlike(s.volumeRatio, was.volumeRatio) | unlike(s.equivalentStress, was.equivalentStress)
+		| unlike(s.plasticStrain, was.plasticStrain);
+	d |= unlike(s.temperature, was.temperature) | unlike(s.stressZZ, was.stressZZ) | unlike(s.dissipated, was.dissipated)
+		| unlike(s.strength, was.strength);
 	d |= unlike(s.links, was.links) | unlike(s.brokenLinks, was.brokenLinks) | unlike(static_cast<const Sphere&>(*was.shape).radius, was.radius);
 	return d == 0;
 }
@@ -89,7 +96,8 @@ vector<McaEngine::Change> McaEngine::changes(bool& rebuild)
 	vector<Change> list;
 	for (size_t q = 0; q < order.size(); q++) {
 		if (const size_t p = q + ahead; p < order.size() && bodies[p] && same[p].state && same[p].shape) {
-			soon(bodies[p]->groupMask), soon(bodies[p]->shape), soon(static_cast<const McaState&>(*same[p].state)), soon(static_cast<const Sphere&>(*same[p].shape).radius);
+			soon(bodies[p]->groupMask), soon(bodies[p]->shape), soon(static_cast<const McaState&>(*same[p].state)),
+				soon(static_cast<const Sphere&>(*same[p].shape).radius);
 		}
 		if (!bodies[q] || untouched(q)) continue;
 		const Change c = changeOf(q, rebuild);
@@ -120,21 +128,34 @@ McaEngine::Change McaEngine::changeOf(size_t q, bool& rebuild)
 	c.temperature   = differs(s.temperature, was.temperature);
 	c.strength      = differs(s.strength, was.strength);
 	c.mask          = b.groupMask != was.mask;
-	c.blocked       = !tied && !(free(State::DOF_X, S.ax[i]) && free(State::DOF_Y, S.ay[i]) && free(State::DOF_RZ, S.ar[i]));
+	c.blocked       = !tied && !(free(State::DOF_X, S.perMassX[i]) && free(State::DOF_Y, S.perMassY[i]) && free(State::DOF_RZ, S.perInertia[i]));
 	if (c.position || c.velocity || c.spin || c.angle) checkMotion(b);
-	if (tied && (c.position || c.velocity)) refuseBody(b, "it is tied to a grid, which moves it; its position and velocity cannot be set. Set those of the grid before the first step.");
-	if (c.plasticStrain && !(s.plasticStrain >= 0 && s.plasticStrain <= 1e6)) refuseBody(b, "state.plasticStrain = " + numberText(s.plasticStrain) + " must be from 0 to 1e6.");
-	if (c.temperature && !(s.temperature > 0 && s.temperature <= 1e9)) refuseBody(b, "state.temperature = " + numberText(s.temperature) + " K must be above 0 and at most 1e9.");
-	if (c.strength && !(s.strength > 0 && s.strength <= 1e9)) refuseBody(b, "state.strength = " + numberText(s.strength) + " must be above 0 and at most 1e9.");
+	if (tied && (c.position || c.velocity))
+		refuseBody(b, "it is tied to a grid, which moves it; its position and velocity cannot be set. Set those of the grid before the first step.");
+	if (c.plasticStrain && !(s.plasticStrain >= 0 && s.plasticStrain <= 1e6))
+		refuseBody(b, "state.plasticStrain = " + numberText(s.plasticStrain) + " must be from 0 to 1e6.");
+	if (c.temperature && !(s.temperature > 0 && s.temperature <= 1e9))
+		refuseBody(b, "state.temperature = " + numberText(s.temperature) + " K must be above 0 and at most 1e9.");
+	if (c.strength && !(s.strength > 0 && s.strength <= 1e9))
+		refuseBody(b, "state.strength = " + numberText(s.strength) + " must be above 0 and at most 1e9.");
 	const Real radius = static_cast<const Sphere*>(b.shape.get())->radius;
 	if (differs(s.mass, was.mass) || differs(s.inertia[2], was.inertia) || differs(radius, was.radius))
-		refuseBody(b, "mass " + numberText(s.mass) + " kg/m, inertia " + numberText(s.inertia[2]) + " kg m or radius " + numberText(radius) + " m was changed (from " + numberText(was.mass) + ", " + numberText(was.inertia) + ", "
-		               + numberText(was.radius) + "); they are read when a body is taken over for the first time. Erase it and add another body.");
+		refuseBody(
+			b,
+			"mass " + numberText(s.mass) + " kg/m, inertia " + numberText(s.inertia[2]) + " kg m or radius " + numberText(radius)
+				+ " m was changed (from " + numberText(was.mass) + ", " + numberText(was.inertia) + ", " + numberText(was.radius)
+				+ "); they are read when a body is taken over for the first time. Erase it and add another body.");
 	const auto result = [&](const char* name, Real now, Real before) {
-		if (differs(now, before)) refuseBody(b, string("state.") + name + " was set to " + numberText(now) + " (it was " + numberText(before) + "); it is a result of the law and cannot be prescribed. Set it back.");
+		if (differs(now, before))
+			refuseBody(
+				b,
+				string("state.") + name + " was set to " + numberText(now) + " (it was " + numberText(before)
+					+ "); it is a result of the law and cannot be prescribed. Set it back.");
 	};
-	result("pressure", s.pressure, was.pressure), result("volumeRatio", s.volumeRatio, was.volumeRatio), result("stressZZ", s.stressZZ, was.stressZZ), result("dissipated", s.dissipated, was.dissipated);
-	result("links", s.links, was.links), result("brokenLinks", s.brokenLinks, was.brokenLinks), result("equivalentStress", s.equivalentStress, was.equivalentStress);
+	result("pressure", s.pressure, was.pressure), result("volumeRatio", s.volumeRatio, was.volumeRatio), result("stressZZ", s.stressZZ, was.stressZZ),
+		result("dissipated", s.dissipated, was.dissipated);
+	result("links", s.links, was.links), result("brokenLinks", s.brokenLinks, was.brokenLinks),
+		result("equivalentStress", s.equivalentStress, was.equivalentStress);
 	rebuild |= b.material.get() != was.material;
 	was.state = b.state, was.shape = b.shape; // others of the same content
 	if (!c.angle) was.ori = s.se3.orientation;
@@ -164,9 +185,9 @@ void McaEngine::apply(const vector<Change>& list)
 		if (c.mask) S.group[i] = now.mask = b.groupMask;
 		if (c.blocked) {
 			now.blocked = s.blockedDOFs;
-			S.ax[i] = s.blockedDOFs & State::DOF_X ? 0. : 1. / S.mass[i];
-			S.ay[i] = s.blockedDOFs & State::DOF_Y ? 0. : 1. / S.mass[i];
-			S.ar[i] = s.blockedDOFs & State::DOF_RZ ? 0. : 1. / S.inertia[i];
+			S.perMassX[i] = s.blockedDOFs & State::DOF_X ? 0. : 1. / S.mass[i];
+			S.perMassY[i] = s.blockedDOFs & State::DOF_Y ? 0. : 1. / S.mass[i];
+			S.perInertia[i] = s.blockedDOFs & State::DOF_RZ ? 0. : 1. / S.inertia[i];
 		}
 	}
 	if (motion) {
@@ -188,7 +209,8 @@ void McaEngine::adoptChanges(Scene* scene)
 	std::unordered_set<const Body*> mine;
 	for (const auto& b : bodies)
 		mine.insert(b.get());
-	const bool joined = std::any_of(scene->bodies->body.begin(), scene->bodies->body.end(), [&](const shared_ptr<Body>& b) { return isAutomaton(b) && !mine.count(b.get()); });
+	const bool joined = std::any_of(
+		scene->bodies->body.begin(), scene->bodies->body.end(), [&](const shared_ptr<Body>& b) { return isAutomaton(b) && !mine.count(b.get()); });
 	if ((joined || rebuild) && !forcesReady) solver->computeForces();
 	if (stale) writeBodies(scene);             // the others are gathered from what they hold
 	gather(scene);
@@ -208,7 +230,8 @@ bool McaEngine::writeBody(State& s, Same& was, size_t i) const
 	was.angVel     = Vector3r(0, 0, S.omega[i]);
 	s.se3.position = was.pos, s.se3.orientation = was.ori, s.vel = was.vel, s.angVel = was.angVel;
 	if (!m) return kept;
-	m->pressure = was.pressure = S.P[i], m->volumeRatio = was.volumeRatio = S.J[i], m->plasticStrain = was.plasticStrain = S.eqps[i], m->temperature = was.temperature = S.temperature[i];
+	m->pressure = was.pressure = S.P[i], m->volumeRatio = was.volumeRatio = S.J[i], m->plasticStrain = was.plasticStrain = S.eqps[i],
+	m->temperature = was.temperature = S.temperature[i];
 	m->stressZZ = was.stressZZ = S.szz[i], m->equivalentStress = was.equivalentStress = solver->equivalentStress(i);
 	m->links       = was.links       = __builtin_popcount(S.flags[i] & mca::linkBits);
 	m->brokenLinks = was.brokenLinks = __builtin_popcount((S.flags[i] >> mca::hadShift) & mca::linkBits) - was.links;
@@ -235,11 +258,16 @@ void McaEngine::writeBodies(Scene* scene)
 	lastWritten = scene->iter;
 	if (lowest < -0.25 && !warnedTension) {
 		warnedTension = true;
-		LOG_WARN("McaEngine: the tensile pressure is " << -lowest << " of the bulk modulus. Links hold any tension unless the material has a strength (spallStrength, fractureStrain, pairStrength or fractureStress).");
+		LOG_WARN(
+			"McaEngine: the tensile pressure is " << -lowest
+							      << " of the bulk modulus. Links hold any tension unless the material has a strength "
+		                                                 "(spallStrength, fractureStrain, pairStrength or fractureStress).");
 	}
 	if (scene->trackEnergy) writeEnergies(scene);
 	if (lost < 0) return;
-	LOG_ERROR("McaEngine: body " << lost << " was changed by a script while the loop ran in the background, when the bodies are not up to date. The change is lost.");
+	LOG_ERROR(
+		"McaEngine: body " << lost
+				   << " was changed by a script while the loop ran in the background, when the bodies are not up to date. The change is lost.");
 }
 
 void McaEngine::bringUpToDate()

@@ -13,8 +13,10 @@ using mca::automata::Store;
 void McaEngine::writeEnergies(Scene* scene)
 {
 	const auto  a       = solver->account();
-	const char* names[] = { "mcaKinetic", "mcaVolumetric", "mcaDeviatoric", "mcaPlastic", "mcaViscous", "mcaFriction", "mcaFracture", "mcaCoupling", "mcaBoundary", "mcaLeft", "mcaExternal", "mcaHalfStep" };
-	const Real  values[] = { a.kinetic, a.volumetric, a.deviatoric, a.plastic, a.viscous, a.friction, a.fracture, a.coupling, a.boundary, a.left, -a.external, a.centre };
+	const char* names[]  = { "mcaKinetic",  "mcaVolumetric", "mcaDeviatoric", "mcaPlastic", "mcaViscous",  "mcaFriction",
+		                 "mcaFracture", "mcaCoupling",   "mcaBoundary",   "mcaLeft",    "mcaExternal", "mcaHalfStep" };
+	const Real  values[] = { a.kinetic,  a.volumetric, a.deviatoric, a.plastic, a.viscous,   a.friction,
+		                 a.fracture, a.coupling,   a.boundary,   a.left,    -a.external, a.centre };
 	for (int k = 0; k < 12; k++)
 		scene->energy->set(values[k], names[k], energyIndex[k]);
 }
@@ -64,7 +66,8 @@ namespace {
 		solver.checkOrder(order);
 		for (const Vector3r& v : viscous)
 			if (!(v[0] >= 0 && v[0] < 2147483648. && v[0] == std::floor(v[0]) && v[1] >= 0 && v[2] >= 0 && std::isfinite(v[1] + v[2])))
-				throw mca::Error("McaEngine: the attribute 'viscous' in the file holds no body and coefficients of a viscous boundary; the file is damaged or was edited.");
+				throw mca::Error("McaEngine: the attribute 'viscous' in the file holds no body and coefficients of a viscous boundary; the "
+				                 "file is damaged or was edited.");
 	}
 } // namespace
 
@@ -89,7 +92,8 @@ void McaEngine::refresh(Scene* scene)
 	if (!solver || (looked && standsIn(*scene))) ensureBuilt(scene);
 }
 
-/// f() of the present state, under the lock; the bodies are gathered if that has not been done. An engine of a scene that is gone would show numbers that no body has.
+/// f() of the present state, under the lock; the bodies are gathered if that has not been done. An engine of a scene that is gone would show numbers that no
+/// body has.
 template <class F> auto McaEngine::read(const char* call, F&& f)
 {
 	return locked([&] {
@@ -105,10 +109,6 @@ py::object McaEngine::identifiers()
 }
 
 namespace {
-	const std::pair<const char*, vector<Real> Store::*> plain[] = { { "angle", &Store::angle }, { "diameter", &Store::diameter }, { "fx", &Store::fx }, { "fy", &Store::fy }, { "mass", &Store::mass },
-		{ "omega", &Store::omega }, { "plasticStrain", &Store::eqps }, { "pressure", &Store::P }, { "strength", &Store::strength }, { "stressZZ", &Store::szz }, { "temperature", &Store::temperature },
-		{ "volumeRatio", &Store::J }, { "vx", &Store::vx }, { "vy", &Store::vy }, { "weight", &Store::weight }, { "x", &Store::x }, { "y", &Store::y } };
-
 	int had(const Store& S, size_t i) { return __builtin_popcount((S.flags[i] >> mca::hadShift) & mca::linkBits); }
 	int have(const Store& S, size_t i) { return __builtin_popcount(S.flags[i] & mca::linkBits); }
 
@@ -123,16 +123,20 @@ namespace {
                                 v.push_back(value(i));
                         return v;
 		};
-		for (const auto& p : plain)
-			if (name == p.first) return each([&, &from = S.*p.second](size_t i) { return from[i]; });
+		vector<Real> found;
+		bool         known = false;
+		string       list;
+		S.eachShown([&](const char* shown, const auto& from) {
+			list += string(shown) + ", ";
+			if (name == shown) known = true, found = each([&](size_t i) { return Real(from[i]); });
+		});
+		if (known) return found;
 		if (name == "equivalentStress") return each([&](size_t i) { return solver.equivalentStress(i); });
 		if (name == "links") return each([&](size_t i) { return Real(have(S, i)); });
 		if (name == "brokenLinks") return each([&](size_t i) { return Real(had(S, i) - have(S, i)); });
 		if (name == "material") return each([&](size_t i) { return Real(S.species[size_t(S.speciesOf(i))].material); });
-		string list;
-		for (const auto& p : plain)
-			list += string(p.first) + ", ";
-		throw mca::Error("McaEngine." + call + " = '" + name + "' is unknown; it must be one of " + list + "equivalentStress, links, brokenLinks, material.");
+		throw mca::Error(
+			"McaEngine." + call + " = '" + name + "' is unknown; it must be one of " + list + "equivalentStress, links, brokenLinks, material.");
 	}
 } // namespace
 
@@ -171,7 +175,8 @@ py::dict McaEngine::fieldsByName(py::object names)
 	});
 	py::dict d;
 	for (size_t k = 0; k < asked.size(); k++)
-		d[asked[k]] = asked[k] == "ids" ? sdk::arrayCopy(ids.data(), { Py_ssize_t(ids.size()) }) : sdk::arrayCopy(values[k].data(), { Py_ssize_t(values[k].size()) });
+		d[asked[k]] = asked[k] == "ids" ? sdk::arrayCopy(ids.data(), { Py_ssize_t(ids.size()) })
+						: sdk::arrayCopy(values[k].data(), { Py_ssize_t(values[k].size()) });
 	return d;
 }
 
@@ -179,9 +184,12 @@ py::dict McaEngine::energies()
 {
 	const auto a = read("energies", [&] { return solver->account(); });
 	py::dict   d;
-	d["kinetic"] = a.kinetic, d["volumetric"] = a.volumetric, d["deviatoric"] = a.deviatoric, d["plastic"] = a.plastic, d["viscous"] = a.viscous, d["friction"] = a.friction;
-	d["fracture"] = a.fracture, d["coupling"] = a.coupling, d["boundary"] = a.boundary, d["left"] = a.left, d["external"] = a.external, d["halfStep"] = a.centre, d["total"] = a.total(), d["bookedError"] = a.bookedError();
-	d["bookedVolumetric"] = a.bookedVolumetric, d["bookedDeviatoric"] = a.bookedDeviatoric, d["bookedViscous"] = a.bookedViscous, d["kineticStart"] = a.kineticStart;
+	d["kinetic"] = a.kinetic, d["volumetric"] = a.volumetric, d["deviatoric"] = a.deviatoric, d["plastic"] = a.plastic, d["viscous"] = a.viscous,
+	d["friction"] = a.friction;
+	d["fracture"] = a.fracture, d["coupling"] = a.coupling, d["boundary"] = a.boundary, d["left"] = a.left, d["external"] = a.external,
+	d["halfStep"] = a.centre, d["total"] = a.total(), d["bookedError"] = a.bookedError();
+	d["bookedVolumetric"] = a.bookedVolumetric, d["bookedDeviatoric"] = a.bookedDeviatoric, d["bookedViscous"] = a.bookedViscous,
+	d["kineticStart"] = a.kineticStart;
 	d["momentumX"] = a.px, d["momentumY"] = a.py, d["angularMomentum"] = a.angular, d["impulseX"] = a.impulseX, d["impulseY"] = a.impulseY;
 	return d;
 }
@@ -203,7 +211,8 @@ py::dict McaEngine::countersNow()
 	});
 	py::dict d;
 	if (!n.any) return d;
-	d["steps"] = n.c.steps, d["searches"] = n.c.searches, d["sorts"] = n.c.sorts, d["blockSteps"] = n.c.blockSteps, d["blocks"] = n.blocks, d["awake"] = n.awake;
+	d["steps"] = n.c.steps, d["searches"] = n.c.searches, d["sorts"] = n.c.sorts, d["blockSteps"] = n.c.blockSteps, d["blocks"] = n.blocks,
+	d["awake"]       = n.awake;
 	d["brokenLinks"] = n.c.brokenLinks, d["clamped"] = n.c.clamped, d["deepest"] = std::min(n.c.deepest, 1.), d["contacts"] = n.contacts;
 	return d;
 }
@@ -214,7 +223,8 @@ py::dict McaEngine::phases()
 	const bool any = locked([&] { return solver ? (c = solver->counters, true) : false; });
 	py::dict   d;
 	if (!any) return d;
-	d["search"] = c.nsSearch, d["density"] = c.nsDensity, d["stress"] = c.nsStress, d["contact"] = c.nsContact, d["force"] = c.nsForce, d["fracture"] = c.nsFracture, d["integration"] = c.nsIntegrate;
+	d["search"] = c.nsSearch, d["density"] = c.nsDensity, d["stress"] = c.nsStress, d["contact"] = c.nsContact, d["force"] = c.nsForce,
+	d["fracture"] = c.nsFracture, d["integration"] = c.nsIntegrate;
 	return d;
 }
 
@@ -249,11 +259,17 @@ void McaEngine::setViscous(const vector<int>& ids, const Vector2r& normal)
 		// width of the boundary that one body stands for: extent of the set over the number of bodies in a line
 		Real lo = 1e300, hi = -1e300;
 		for (int id : ids) {
-			if (!scene->bodies->exists(id)) throw std::runtime_error("McaEngine.setViscous: ids: there is no body " + std::to_string(id) + "; each must be the id of an automaton.");
+			if (!scene->bodies->exists(id))
+				throw std::runtime_error(
+					"McaEngine.setViscous: ids: there is no body " + std::to_string(id) + "; each must be the id of an automaton.");
 			const auto& b = scene->bodies->body[size_t(id)];
-			if (!isAutomaton(b) || !b->state) throw std::runtime_error("McaEngine.setViscous: ids: body " + std::to_string(id) + " is no automaton; it must have material McaMat, shape Sphere and a state.");
+			if (!isAutomaton(b) || !b->state)
+				throw std::runtime_error(
+					"McaEngine.setViscous: ids: body " + std::to_string(id)
+					+ " is no automaton; it must have material McaMat, shape Sphere and a state.");
 			const Real t = b->state->se3.position[alongX ? 1 : 0];
-			if (!std::isfinite(t)) throw std::runtime_error("McaEngine.setViscous: ids: the position of body " + std::to_string(id) + " must be finite.");
+			if (!std::isfinite(t))
+				throw std::runtime_error("McaEngine.setViscous: ids: the position of body " + std::to_string(id) + " must be finite.");
 			lo = std::min(lo, t), hi = std::max(hi, t);
 		}
 		vector<Vector3r> added;

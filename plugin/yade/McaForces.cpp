@@ -2,7 +2,7 @@
 // The end of the law's step: sums of the pair forces in a fixed order, energies.
 #include "McaBodies.hpp"
 #include "McaCast.hpp"
-#include "McaDensity.hpp"
+#include "McaLaw.hpp"
 #include "McaGuarded.hpp"
 #include <pkg/common/Sphere.hpp>
 #include <core/Omega.hpp>
@@ -15,7 +15,8 @@ using mca::sqr;
 using mca::nLinks;
 
 namespace {
-	/// Force [N/m], torque about z [N], viscous share of the force [N/m] and viscous heat of the links over the last move [J/m] on one body, links in the order of their slots, then the others by id.
+	/// Force [N/m], torque about z [N], viscous share of the force [N/m] and viscous heat of the links over the last move [J/m] on one body, links in the
+	/// order of their slots, then the others by id.
 	struct Sum {
 		Vector3r force = Vector3r::Zero();
 		Vector2r viscous = Vector2r::Zero();
@@ -58,24 +59,41 @@ namespace {
 			if (!(s.blockedDOFs & (axis ? State::DOF_Y : State::DOF_X)) && s.mass > 0) v[axis] += share * scene.dt * f[axis] / s.mass;
 		return v;
 	}
+	/// Before anything is added: a force that is not finite must not get into the bodies.
+	void checkSums(const vector<Sum>& sums, long steps)
+	{
+		for (size_t i = 0; i < sums.size(); i++) {
+			const Sum& s = sums[i];
+			if (std::fabs(s.force[0]) + std::fabs(s.force[1]) + std::fabs(s.force[2]) + std::fabs(s.torque) < 1e100) continue;
+			std::ostringstream o;
+			o << "body " << i << ": force (" << s.force[0] << ", " << s.force[1] << ") N/m in step " << steps
+			  << " is not finite, or beyond 1e100. Positions are those before the step; save and look, or use a "
+			     "smaller time step. Check positions, "
+			     "velocities, and kn and ks of contacts with walls, that a script has set.";
+			throw mca::Error(o.str());
+		}
+	}
 } // namespace
 
 void McaForces::action()
 {
 	guarded([&] {
 		for (const auto& e : scene->engines)
-			if (auto* d = e && !e->dead ? dynamic_cast<McaDensity*>(e.get()) : nullptr) return d->addForces(scene);
-		throw mca::Error("McaForces: there is no McaDensity in O.engines, or it is dead; it must come before InteractionLoop.");
+			if (auto* d = e && !e->dead ? dynamic_cast<McaLaw*>(e.get()) : nullptr) return d->addForces(scene);
+		throw mca::Error("McaForces: there is no McaLaw in O.engines, or it is dead; it must come before InteractionLoop.");
 	});
 }
 
-void McaDensity::addForces(Scene* scene)
+void McaLaw::addForces(Scene* scene)
 {
-	if (doneAt != scene->iter) throw mca::Error("McaForces: McaDensity has not run in this step; it must come before InteractionLoop and run in every step.");
+	if (doneAt != scene->iter) throw mca::Error("McaForces: McaLaw has not run in this step; it must come before InteractionLoop and run in every step.");
 	if (const string error = McaPhys::takeError(); !error.empty()) throw mca::Error(error);
 	for (const Row& r : rows)
 		if (const auto& b = scene->bodies->body[size_t(r.id)]; !b || b->state.get() != r.state)
-			throw mca::Error("McaForces: body " + std::to_string(r.id) + " was erased or got another state between McaDensity and McaForces; put the engine that does it before McaDensity or after NewtonIntegrator.");
+			throw mca::Error(
+				"McaForces: body " + std::to_string(r.id)
+				+ " was erased or got another state between McaLaw and McaForces; put the engine that does it before McaLaw or after "
+			          "NewtonIntegrator.");
 	const auto& bodies = scene->bodies->body;
 	const long  n      = long(bodies.size());
 	vector<Sum> sums(bodies.size());
@@ -85,14 +103,7 @@ void McaDensity::addForces(Scene* scene)
 			auto* m = castTo<McaState>(b->state.get());
 			sums[size_t(i)].add(*b, m ? m->law.get() : nullptr, lastMove);
 		}
-	for (long i = 0; i < n; i++) {
-		const Sum& s = sums[size_t(i)];
-		if (std::fabs(s.force[0]) + std::fabs(s.force[1]) + std::fabs(s.force[2]) + std::fabs(s.torque) < 1e100) continue;
-		std::ostringstream o;
-		o << "body " << i << ": force (" << s.force[0] << ", " << s.force[1] << ") N/m in step " << steps
-		  << " is not finite, or beyond 1e100. Positions are those before the step; save and look, or use a smaller time step. Check positions, velocities, and kn and ks of contacts with walls, that a script has set.";
-		throw mca::Error(o.str());
-	}
+	checkSums(sums, steps);
 	for (long i = 0; i < n; i++) {
 		const Sum& s = sums[size_t(i)];
 		if (s.any) scene->forces.addForce(int(i), s.force), scene->forces.addTorque(int(i), Vector3r(0, 0, s.torque));
@@ -121,7 +132,9 @@ void McaDensity::addForces(Scene* scene)
 		const Vector3r &f = scene->forces.getForce(r.id), &t = scene->forces.getTorque(r.id);
 		const auto      free = [&](unsigned dof) { return s.blockedDOFs & dof ? 0. : scene->dt; };
 		r.l->from     = Vector3r(s.se3.position[0], s.se3.position[1], 2. * std::atan2(s.se3.orientation.z(), s.se3.orientation.w()));
-		r.l->expected = Vector3r(s.vel[0] + free(State::DOF_X) * f[0] / s.mass, s.vel[1] + free(State::DOF_Y) * f[1] / s.mass, s.angVel[2] + (s.inertia[2] > 0 ? free(State::DOF_RZ) * t[2] / s.inertia[2] : 0.));
+		r.l->expected        = Vector3r(
+			       s.vel[0] + free(State::DOF_X) * f[0] / s.mass, s.vel[1] + free(State::DOF_Y) * f[1] / s.mass,
+			       s.angVel[2] + (s.inertia[2] > 0 ? free(State::DOF_RZ) * t[2] / s.inertia[2] : 0.));
 	}
 	lastMove = scene->dt;
 	if (pushedAt != scene->iter) steps++; // not twice when something has stopped the step before NewtonIntegrator
@@ -129,7 +142,7 @@ void McaDensity::addForces(Scene* scene)
 }
 
 // State energies: volume and deviator of all automata [J/m].
-void McaDensity::stateEnergies(Scene& scene, Real& volumetric, Real& deviatoric, Real& kinetic, Real& centre) const
+void McaLaw::stateEnergies(Scene& scene, Real& volumetric, Real& deviatoric, Real& kinetic, Real& centre) const
 {
 	volumetric = deviatoric = kinetic = 0;
 	centre = -0.5 * lastViscous; // velocities stand half a step after stresses
@@ -145,10 +158,13 @@ void McaDensity::stateEnergies(Scene& scene, Real& volumetric, Real& deviatoric,
 		const auto& c = constants[size_t(it - seen.begin())];
 		const auto& l = *m->law;
 		volumetric += mca::volumeEnergy(c, l.cell, m->volumeRatio, m->dissipated);
-		if (l.rule == int(mca::VolumeRule::affine) && l.offset > 0) volumetric += mca::coldEnergy(c, l.cell, mca::contactRatio(l.contactSum)); // contacts have a volume of their own
+		if (l.rule == int(mca::VolumeRule::affine) && l.offset > 0)
+			volumetric += mca::coldEnergy(c, l.cell, mca::contactRatio(l.contactSum)); // contacts have a volume of their own
 		kinetic += 0.5 * (m->mass * m->vel.squaredNorm() + m->inertia[2] * sqr(m->angVel[2]));
 		centre += 0.5 * m->mass * (meanVelocity(scene, b->id, *m, -0.5).squaredNorm() - m->vel.squaredNorm());
-		if (!(m->blockedDOFs & State::DOF_RZ) && m->inertia[2] > 0) centre += 0.5 * m->inertia[2] * (sqr(m->angVel[2] - 0.5 * scene.dt * scene.forces.getTorque(b->id)[2] / m->inertia[2]) - sqr(m->angVel[2]));
+		if (!(m->blockedDOFs & State::DOF_RZ) && m->inertia[2] > 0)
+			centre += 0.5 * m->inertia[2]
+				* (sqr(m->angVel[2] - 0.5 * scene.dt * scene.forces.getTorque(b->id)[2] / m->inertia[2]) - sqr(m->angVel[2]));
 		Real pairs = 0;
 		for (const auto& entry : b->intrs) {
 			const auto* p = castTo<const McaPhys>(entry.second->phys.get());
@@ -161,13 +177,14 @@ void McaDensity::stateEnergies(Scene& scene, Real& volumetric, Real& deviatoric,
 	volumetric -= heated;
 }
 
-void McaDensity::bookEnergies(Scene* scene)
+void McaLaw::bookEnergies(Scene* scene)
 {
 	Real volumetric, deviatoric, kinetic, centre;
 	stateEnergies(*scene, volumetric, deviatoric, kinetic, centre);
 	const Real total = kinetic + centre + volumetric + deviatoric + plastic + viscous + frictional + fracture + coupling;
 	// bodies were added or erased since the last step: the sum is kept over a step, so what is missing or more is theirs
-	const bool changed = members.size() != rows.size() || !std::equal(rows.begin(), rows.end(), members.begin(), [](const Row& r, int id) { return r.id == id; });
+	const bool changed =
+		members.size() != rows.size() || !std::equal(rows.begin(), rows.end(), members.begin(), [](const Row& r, int id) { return r.id == id; });
 	if (changed && !members.empty() && bookedAt == scene->iter - 1) joined += total - lastTotal;
 	lastTotal = total, bookedAt = scene->iter;
 	const char* names[]  = { "mcaVolumetric", "mcaDeviatoric", "mcaPlastic", "mcaViscous", "mcaFriction", "mcaFracture", "mcaCoupling", "mcaJoined" };
@@ -176,38 +193,44 @@ void McaDensity::bookEnergies(Scene* scene)
 		scene->energy->set(values[k], names[k], energyIndex[k]);
 }
 
-void McaDensity::refuseWhileRunning(const char* what) const
+void McaLaw::refuseWhileRunning(const char* what) const
 {
 	if (Omega::instance().isRunning() && worker != std::this_thread::get_id())
-		throw std::runtime_error(string("McaDensity.") + what + "(): the simulation is running in the background and changes what is asked for; O.pause() and O.wait() first, or ask from a PyRunner.");
+		throw std::runtime_error(
+			string("McaLaw.") + what
+			+ "(): the simulation is running in the background and changes what is asked for; O.pause() and O.wait() first, or ask from a "
+		          "PyRunner.");
 }
 
-py::dict McaDensity::energies()
+py::dict McaLaw::energies()
 {
 	refuseWhileRunning("energies");
 	Real volumetric, deviatoric, kinetic, centre;
 	stateEnergies(*Omega::instance().getScene(), volumetric, deviatoric, kinetic, centre);
 	py::dict d;
-	d["kinetic"] = kinetic, d["volumetric"] = volumetric, d["deviatoric"] = deviatoric, d["plastic"] = plastic, d["viscous"] = viscous, d["friction"] = frictional, d["fracture"] = fracture;
-	d["coupling"] = coupling, d["total"] = kinetic + centre + volumetric + deviatoric + plastic + viscous + frictional + fracture + coupling, d["joined"] = joined;
+	d["kinetic"] = kinetic, d["volumetric"] = volumetric, d["deviatoric"] = deviatoric, d["plastic"] = plastic, d["viscous"] = viscous,
+	d["friction"] = frictional, d["fracture"] = fracture;
+	d["coupling"] = coupling, d["total"] = kinetic + centre + volumetric + deviatoric + plastic + viscous + frictional + fracture + coupling,
+	d["joined"] = joined;
 	return d;
 }
 
-py::dict McaDensity::counters() const
+py::dict McaLaw::counters() const
 {
 	py::dict d;
 	d["steps"] = steps, d["brokenLinks"] = brokenLinks, d["clamped"] = clamped, d["deepest"] = deepest;
 	return d;
 }
 
-py::list McaDensity::links() const
+py::list McaLaw::links() const
 {
 	refuseWhileRunning("links");
 	py::list out;
 	for (const auto& b : Omega::instance().getScene()->bodies->body)
 		if (b)
 			for (const auto& entry : b->intrs)
-				if (const auto* p = castTo<const McaPhys>(entry.second->phys.get()); p && p->linked && b->id < entry.first) out.append(py::make_tuple(b->id, entry.first));
+				if (const auto* p = castTo<const McaPhys>(entry.second->phys.get()); p && p->linked && b->id < entry.first)
+					out.append(py::make_tuple(b->id, entry.first));
 	return out;
 }
 } // namespace yade

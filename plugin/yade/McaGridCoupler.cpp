@@ -18,7 +18,10 @@ namespace {
 		for (const auto& e : scene->engines) {
 			auto t = boost::dynamic_pointer_cast<T>(e);
 			if (!t) continue;
-			if (found) throw mca::Error(string("McaGridCoupler: there are several ") + t->getClassName() + " in O.engines; say which by the attribute '" + attribute + "'.");
+			if (found)
+				throw mca::Error(
+					string("McaGridCoupler: there are several ") + t->getClassName() + " in O.engines; say which by the attribute '"
+					+ attribute + "'.");
 			found = t;
 		}
 		return found;
@@ -55,11 +58,15 @@ void McaGridCoupler::find(Scene* scene)
 	foundAutomata = automata ? automata : onlyOne<McaEngine>(scene, "automata");
 	foundGrid     = grid ? grid : onlyOne<McaGridEngine>(scene, "grid");
 	if (!foundGrid) throw mca::Error("McaGridCoupler: there is no McaGridEngine in O.engines.");
-	const auto stands = [&](const Engine* e) { return std::any_of(scene->engines.begin(), scene->engines.end(), [&](const shared_ptr<Engine>& s) { return s.get() == e; }); };
+	const auto stands = [&](const Engine* e) {
+		return std::any_of(scene->engines.begin(), scene->engines.end(), [&](const shared_ptr<Engine>& s) { return s.get() == e; });
+	};
 	const bool a = !foundAutomata || stands(foundAutomata.get()), g = stands(foundGrid.get());
 	if (!a || !g) {
 		foundAutomata.reset(), foundGrid.reset();
-		throw mca::Error(string("McaGridCoupler: the attribute '") + (a ? "grid" : "automata") + "' is an engine that does not stand in O.engines; put it there, or leave the attribute empty to take the only one.");
+		throw mca::Error(
+			string("McaGridCoupler: the attribute '") + (a ? "grid" : "automata")
+			+ "' is an engine that does not stand in O.engines; put it there, or leave the attribute empty to take the only one.");
 	}
 }
 
@@ -69,10 +76,10 @@ bool McaGridCoupler::drives(const McaSolverEngine* engine, Scene* scene)
 	return engine == foundAutomata.get() || engine == foundGrid.get();
 }
 
-vector<RowPoint> McaGridCoupler::candidates(Scene* scene, vector<mca::Material>& keep) const
+vector<RowPoint> McaGridCoupler::candidates(Scene* scene, std::deque<mca::Material>& keep) const
 {
 	vector<RowPoint>          out;
-	std::map<const void*, size_t> known;
+	std::map<const McaMat*, const mca::Material*> known;
 	const auto                add = [&](const Body& b, const vector<Vector3r>* at) {
                 const auto* m      = dynamic_cast<const McaMat*>(b.material.get());
                 const auto* sphere = dynamic_cast<const Sphere*>(b.shape.get());
@@ -82,9 +89,9 @@ vector<RowPoint> McaGridCoupler::candidates(Scene* scene, vector<mca::Material>&
                 p.id = b.id, p.x = x[0], p.y = x[1], p.diameter = 2. * sphere->radius, p.mass = b.state->mass;
                 p.weight = p.mass / (b.material->density * mca::Lattice::cell(p.diameter));
                 if (m) {
-                        const auto it = known.emplace(m, keep.size());
-                        if (it.second) keep.push_back(m->toMaterial());
-                        p.material = reinterpret_cast<const mca::Material*>(it.first->second + 1); // an index until the list is complete
+                        const mca::Material*& mine = known[m];
+                        if (!mine) keep.push_back(m->toMaterial()), mine = &keep.back(); // a deque does not move what it has
+                        p.material = mine;
                 }
                 out.push_back(p);
 	};
@@ -93,20 +100,21 @@ vector<RowPoint> McaGridCoupler::candidates(Scene* scene, vector<mca::Material>&
 		if (!foundAutomata) return add(*b, nullptr);
 		const auto  i = foundAutomata->automata().indexOf(id);
 		const auto& S = foundAutomata->automata().store;
-		if (i < 0) throw mca::Error("McaGridCoupler: body " + std::to_string(id) + " is not an automaton of the McaEngine (material McaMat and shape Sphere).");
+		if (i < 0)
+			throw mca::Error(
+				"McaGridCoupler: body " + std::to_string(id) + " is not an automaton of the McaEngine (material McaMat and shape Sphere).");
 		const vector<Vector3r> x { Vector3r(S.x[size_t(i)], S.y[size_t(i)], 0) };
 		add(*b, &x);
 	};
 	if (!ids.empty()) {
 		for (int id : ids) {
-			if (id < 0 || size_t(id) >= scene->bodies->body.size() || !scene->bodies->body[size_t(id)]) throw mca::Error("McaGridCoupler: there is no body " + std::to_string(id) + ".");
+			if (id < 0 || size_t(id) >= scene->bodies->body.size() || !scene->bodies->body[size_t(id)])
+				throw mca::Error("McaGridCoupler: there is no body " + std::to_string(id) + ".");
 			point(id);
 		}
 	} else
 		for (const auto& b : scene->bodies->body)
 			if (b && dynamic_cast<const McaMat*>(b->material.get()) && dynamic_cast<const Sphere*>(b->shape.get())) point(b->id);
-	for (auto& p : out)
-		if (p.material) p.material = &keep[reinterpret_cast<size_t>(p.material) - 1];
 	return out;
 }
 
@@ -128,9 +136,13 @@ void McaGridCoupler::makeRow(Scene* scene)
 	s.inX = b.x[b.node(i, j)], s.inY = b.y[b.node(i, j)];
 	mca::interface::MapOptions o;
 	o.tolerance = tolerance, o.smallestRatio = ratio[0], o.largestRatio = ratio[1], o.otherMaterials = otherMaterials, o.onlyGiven = !ids.empty();
-	if (!(ratio[0] > 0 && ratio[0] <= ratio[1] && ratio[1] <= 1e6)) throw mca::Error("McaGridCoupler: ratio = (" + std::to_string(ratio[0]) + ", " + std::to_string(ratio[1]) + ") must be two rising numbers above 0 and at most 1e6.");
-	if (!(tolerance > 0 && tolerance <= 0.05)) throw mca::Error("McaGridCoupler: tolerance = " + std::to_string(tolerance) + " must be above 0 and at most 0.05 diameters.");
-	vector<mca::Material> keep;
+	if (!(ratio[0] > 0 && ratio[0] <= ratio[1] && ratio[1] <= 1e6))
+		throw mca::Error(
+			"McaGridCoupler: ratio = (" + std::to_string(ratio[0]) + ", " + std::to_string(ratio[1])
+			+ ") must be two rising numbers above 0 and at most 1e6.");
+	if (!(tolerance > 0 && tolerance <= 0.05))
+		throw mca::Error("McaGridCoupler: tolerance = " + std::to_string(tolerance) + " must be above 0 and at most 0.05 diameters.");
+	std::deque<mca::Material> keep;
 	row = mca::interface::makeMap(candidates(scene, keep), s, o);
 }
 
@@ -164,7 +176,8 @@ string McaGridCoupler::asText() const
 {
 	std::ostringstream s;
 	s.precision(17);
-	s << "block " << block << ", side '" << side << "', start " << start << ", end " << end << ", tolerance " << tolerance << ", ratio (" << ratio[0] << ", " << ratio[1] << "), otherMaterials " << otherMaterials << ", ids";
+	s << "block " << block << ", side '" << side << "', start " << start << ", end " << end << ", tolerance " << tolerance << ", ratio (" << ratio[0]
+	  << ", " << ratio[1] << "), otherMaterials " << otherMaterials << ", ids";
 	for (int id : ids)
 		s << ' ' << id;
 	return s.str();
@@ -174,10 +187,14 @@ string McaGridCoupler::asText() const
 void McaGridCoupler::checkHome(Scene* scene)
 {
 	if (const string text = asText(); text != tiedAs || (automata && automata != foundAutomata) || (grid && grid != foundGrid))
-		throw mca::Error("McaGridCoupler: its attributes were changed after the row was tied, when they are read (now " + text + "; tied as " + tiedAs + "; or automata or grid); set them back, or make a new scene.");
+		throw mca::Error(
+			"McaGridCoupler: its attributes were changed after the row was tied, when they are read (now " + text + "; tied as " + tiedAs
+			+ "; or automata or grid); set them back, or make a new scene.");
 	const auto now = home.lock();
 	if (now.get() == scene) return;
-	if (!loaded) throw mca::Error("McaGridCoupler: it has tied bodies of another scene (O.reset, O.load, ...); take the coupler of the present scene from O.engines, or make new couplers and a new grid.");
+	if (!loaded)
+		throw mca::Error("McaGridCoupler: it has tied bodies of another scene (O.reset, O.load, ...); take the coupler of the present scene from "
+		                 "O.engines, or make new couplers and a new grid.");
 	inBoth([&] { checkTied(scene); });
 	loaded = false;
 	home   = Omega::instance().getScene();
@@ -187,7 +204,9 @@ void McaGridCoupler::prepare(Scene* scene)
 {
 	find(scene);
 	if (tied) {
-		if (foundAutomata && !foundAutomata->built()) throw mca::Error("McaGridCoupler: its row is tied, but its McaEngine has no automata; a new engine cannot take the place of the one that was tied.");
+		if (foundAutomata && !foundAutomata->built())
+			throw mca::Error("McaGridCoupler: its row is tied, but its McaEngine has no automata; a new engine cannot take the place of the one "
+			                 "that was tied.");
 		return checkHome(scene);
 	}
 	const auto couplers = all(scene);
@@ -212,13 +231,16 @@ void McaGridCoupler::prepare(Scene* scene)
 // The row of a loaded scene against what it refers to.
 void McaGridCoupler::checkTied(Scene* scene)
 {
-	const auto refuse = [](int id, const char* what) { throw mca::Error("McaGridCoupler: the saved row does not belong to this scene: body " + std::to_string(id) + " " + what + "."); };
+	const auto refuse = [](int id, const char* what) {
+		throw mca::Error("McaGridCoupler: the saved row does not belong to this scene: body " + std::to_string(id) + " " + what + ".");
+	};
 	mca::interface::checkRow(row, foundGrid->grid().open().size());
 	if (foundAutomata) foundAutomata->ensureBuilt(scene);
 	if (foundAutomata && places.size() != row.size()) refuse(row.front().id, "has no place among the tied automata");
 	for (size_t k = 0; k < row.size(); k++) {
 		const int id = row[k].id;
-		if (size_t(id) >= scene->bodies->body.size() || !scene->bodies->body[size_t(id)] || !scene->bodies->body[size_t(id)]->state) refuse(id, "is not there");
+		if (size_t(id) >= scene->bodies->body.size() || !scene->bodies->body[size_t(id)] || !scene->bodies->body[size_t(id)]->state)
+			refuse(id, "is not there");
 		if (foundAutomata && (places[k] < 0 || !foundAutomata->automata().isTied(size_t(places[k]), id))) refuse(id, "is not tied");
 	}
 	loaded = false;
@@ -232,11 +254,11 @@ void McaGridCoupler::forcesToNodes(Scene* scene)
 	if (foundAutomata) {
 		auto&       A = foundAutomata->automata();
 		const auto& S = A.store;
-		const bool  outside = !S.ex.empty();
+		const bool  outside = !S.outsideX.empty();
 		const Real  f = A.kick(dt) / g.kick(dt); // 1 but for the first step of one side beside an older one
 		for (const Carried& c : row) {
 			const size_t i = size_t(A.indexOf(c.id));
-			mca::interface::addForce(c, f * (outside ? S.fx[i] + S.ex[i] : S.fx[i]), f * (outside ? S.fy[i] + S.ey[i] : S.fy[i]), n);
+			mca::interface::addForce(c, f * (outside ? S.fx[i] + S.outsideX[i] : S.fx[i]), f * (outside ? S.fy[i] + S.outsideY[i] : S.fy[i]), n);
 		}
 	} else {
 		scene->forces.sync();
@@ -361,7 +383,8 @@ py::dict McaGridCoupler::energies()
 		if (c->foundAutomata && done.insert(c->foundAutomata.get()).second) {
 			c->foundAutomata->refresh(now); // what a script has changed counts already
 			const auto a = c->foundAutomata->automata().account();
-			kinetic += a.kinetic, total += a.total(), booked += a.bookedError(), px += a.px, py_ += a.py, jx += a.impulseX, jy += a.impulseY, turn += a.angular;
+			kinetic += a.kinetic, total += a.total(), booked += a.bookedError(), px += a.px, py_ += a.py, jx += a.impulseX, jy += a.impulseY,
+				turn += a.angular;
 		}
 		if (!done.insert(c->foundGrid.get()).second) return;
 		const auto& g = c->foundGrid->grid();
@@ -381,7 +404,8 @@ py::dict McaGridCoupler::energies()
 		});
 	}
 	py::dict d;
-	d["kinetic"] = kinetic, d["total"] = total, d["booked"] = booked, d["momentumX"] = px, d["momentumY"] = py_, d["impulseX"] = jx, d["impulseY"] = jy, d["angularMomentum"] = turn;
+	d["kinetic"] = kinetic, d["total"] = total, d["booked"] = booked, d["momentumX"] = px, d["momentumY"] = py_, d["impulseX"] = jx, d["impulseY"] = jy,
+	d["angularMomentum"] = turn;
 	return d;
 }
 } // namespace yade

@@ -3,6 +3,7 @@
 #include "McaEngine.hpp"
 #include "McaGridEngine.hpp"
 #include "interface/transfer.hpp"
+#include <deque>
 
 namespace yade {
 
@@ -25,21 +26,29 @@ public:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(McaGridCoupler, GlobalEngine,
-		"Ties a row of automata to a side, or part of a side, of a block of :yref:`McaGridEngine`. The side runs along the centres of one close-packed row; each automaton on it stands for "
-		"the half of its cell that is not grid. The row moves with the nodes (linear on each edge of the grid) and hands its mass and forces to them by the same weights, so momentum and energy are "
-		"exact. Its spin stays free: it then follows the rotation of the medium, not that of the edge alone. At the start the row takes the velocity of the grid. "
-		"Order of engines: :yref:`McaTimeStepper`, :yref:`McaEngine`, :yref:`McaGridEngine`, couplers. Without McaEngine the row is taken from O.bodies, which Law2 and NewtonIntegrator move: "
+		"Ties a row of automata to a side, or part of a side, of a block of :yref:`McaGridEngine`. The side runs along the centres of one "
+		"close-packed row; each automaton on it stands for "
+		"the half of its cell that is not grid. The row moves with the nodes (linear on each edge of the grid) and hands its mass and forces to them "
+		"by the same weights, so momentum and energy are "
+		"exact. Its spin stays free: it then follows the rotation of the medium, not that of the edge alone. At the start the row takes the velocity "
+		"of the grid. "
+		"Order of engines: :yref:`McaTimeStepper`, :yref:`McaEngine`, :yref:`McaGridEngine`, couplers. Without McaEngine the row is taken from "
+		"O.bodies, which Law2 and NewtonIntegrator move: "
 		"InteractionLoop, McaGridEngine, couplers, NewtonIntegrator. "
 		"A row off the line, gaps, overlaps, whole automata on the line, unlike materials and edges of another size are errors before the first step.",
-		((shared_ptr<McaEngine>, automata, , , "automata; empty: the only McaEngine of the scene, or O.bodies when there is none; read when the row is tied, a later change is refused"))
-		((shared_ptr<McaGridEngine>, grid, , , "grid; empty: the only McaGridEngine of the scene; read when the row is tied, a later change is refused"))
+		((shared_ptr<McaEngine>, automata, , , "automata; empty: the only McaEngine of the scene, or O.bodies when there is none; read when the row "
+		    "is tied, a later change is refused"))
+		((shared_ptr<McaGridEngine>, grid, , , "grid; empty: the only McaGridEngine of the scene; read when the row is tied, a later change is "
+		    "refused"))
 		((int, block, 0, , "number of the block; read when the row is tied, a later change is refused"))
 		((string, side, "left", , "side of the block: 'bottom', 'right', 'top' or 'left'; read when the row is tied, a later change is refused"))
 		((int, start, 0, , "first node of the side; read when the row is tied, a later change is refused"))
 		((int, end, -1, , "last node of the side, inclusive; -1: the last there is; read when the row is tied, a later change is refused"))
-		((vector<int>, ids, , , "bodies of the row in any order; empty: all automata on the line; read when the row is tied, a later change is refused"))
+		((vector<int>, ids, , , "bodies of the row in any order; empty: all automata on the line; read when the row is tied, a later change is "
+		    "refused"))
 		((Real, tolerance, 1e-4, , "allowed distance from the line, over the diameter [-]; read when the row is tied, a later change is refused"))
-		((Vector2r, ratio, Vector2r(0.5, 4.5), , "smallest and largest edge of the grid on the interface, over the diameter [-]; read when the row is tied, a later change is refused"))
+		((Vector2r, ratio, Vector2r(0.5, 4.5), , "smallest and largest edge of the grid on the interface, over the diameter [-]; read when the row "
+		    "is tied, a later change is refused"))
 		((bool, otherMaterials, false, , "allow unlike materials on the two sides; read when the row is tied, a later change is refused"))
 		((sdk::Blob, state, , Attr::hidden, "the map"))
 		((string, tiedAs, "", Attr::hidden, "the attributes with which the row was tied"))
@@ -49,8 +58,10 @@ public:
 		.add_property("rowIds", &McaGridCoupler::rowIds, "Ids of the tied bodies in order along the side; empty before the first step.")
 		.add_property("rowNodes", &McaGridCoupler::rowNodes, "Open nodes (first, second) of the edge that carries each tied body.")
 		.add_property("rowShares", &McaGridCoupler::rowShares, "Shares of the two nodes in each tied body [-]; they add to 1.")
-		.def("energies", &McaGridCoupler::energies, "Sums over all automata and grids that are coupled in the scene, per 1 m of thickness: 'kinetic' [J/m], 'total' [J/m] (stays constant), 'booked' [J/m] "
-			"(the same from the work of the forces: constant to round-off when the accounts are kept), 'momentumX', 'momentumY', 'impulseX', 'impulseY' (from outside) [N s/m], 'angularMomentum' about the origin [N s].")
+		.def("energies", &McaGridCoupler::energies, "Sums over all automata and grids that are coupled in the scene, per 1 m of thickness: 'kinetic' "
+		    "[J/m], 'total' [J/m] (stays constant), 'booked' [J/m] "
+			"(the same from the work of the forces: constant to round-off when the accounts are kept), 'momentumX', 'momentumY', 'impulseX', "
+			"'impulseY' (from outside) [N s/m], 'angularMomentum' about the origin [N s].")
 	)
 	// clang-format on
 
@@ -70,7 +81,7 @@ private:
 	void                            makeRow(Scene*);
 	void                            tieRow(Scene*);
 	void                            checkTied(Scene*);
-	vector<mca::interface::RowPoint> candidates(Scene*, vector<mca::Material>& keep) const;
+	vector<mca::interface::RowPoint> candidates(Scene*, std::deque<mca::Material>& keep) const;
 	void                            forcesToNodes(Scene*);
 	void                            motionToRow(Scene*, bool positions);
 	vector<McaGridCoupler*>         all(Scene*) const;

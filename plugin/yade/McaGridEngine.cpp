@@ -45,7 +45,8 @@ void McaGridEngine::step()
 	findCoupler(scene);
 	locked([&] {
 		if (coupled) return computeForces(scene);
-		if (!(dtFactor > 0 && dtFactor <= 1)) throw mca::Error("McaGridEngine: dtFactor = " + std::to_string(dtFactor) + " must be above 0 and at most 1.");
+		if (!(dtFactor > 0 && dtFactor <= 1))
+			throw mca::Error("McaGridEngine: dtFactor = " + std::to_string(dtFactor) + " must be above 0 and at most 1.");
 		if (adaptive && grid().blocks()) {
 			const Real limit = dtFactor * grid().criticalTimeStep();
 			scene->dt        = solver->steps() > 0 && scene->dt > 0 ? std::min(limit, 1.1 * scene->dt) : limit;

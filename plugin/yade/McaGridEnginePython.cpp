@@ -26,7 +26,9 @@ namespace {
 			const py::object numpy = py::import("numpy");
 			const py::object given = numpy.attr("asarray")(o);
 			const char       kind  = py::extract<char>(given.attr("dtype").attr("kind"));
-			if (kind != 'f' && kind != 'i' && kind != 'u') throw mca::Error(string(name) + " must be real numbers, not " + string(py::extract<string>(py::str(given.attr("dtype")))) + ".");
+			if (kind != 'f' && kind != 'i' && kind != 'u')
+				throw mca::Error(
+					string(name) + " must be real numbers, not " + string(py::extract<string>(py::str(given.attr("dtype")))) + ".");
 			const py::object a = numpy.attr("ascontiguousarray")(given, "float64");
 			Py_buffer        b;
 			if (PyObject_GetBuffer(a.ptr(), &b, PyBUF_C_CONTIGUOUS) != 0) py::throw_error_already_set();
@@ -50,7 +52,8 @@ namespace {
 		Table t(0);
 		if (number.check() && !PyUnicode_Check(o.ptr())) t = Table(number());
 		else {
-			if (!PySequence_Check(o.ptr()) || PyUnicode_Check(o.ptr()) || py::len(o) != 2) throw mca::Error(string(name) + " must be a number or a pair (times [s], values) of rising times and as many values.");
+			if (!PySequence_Check(o.ptr()) || PyUnicode_Check(o.ptr()) || py::len(o) != 2)
+				throw mca::Error(string(name) + " must be a number or a pair (times [s], values) of rising times and as many values.");
 			const string times = string(name) + " (times)", values = string(name) + " (values)";
 			t = Table(numbers(o[0], times.c_str()), numbers(o[1], values.c_str()));
 		}
@@ -117,7 +120,10 @@ int McaGridEngine::addRectangle(shared_ptr<Material> material, py::object xs, py
 		if (sx.size() != 1 || sy.size() != 1) throw mca::Error("xs and ys must be rows of numbers (one dimension), the grid lines [m].");
 		for (const auto* v : { &x, &y })
 			for (size_t k = 1; k < v->size(); k++)
-				if (!((*v)[k] > (*v)[k - 1]) && v->size() > 2 && (*v)[k] == (*v)[k - 1]) throw mca::Error(string(v == &x ? "xs" : "ys") + " must rise; entries " + std::to_string(k - 1) + " and " + std::to_string(k) + " are equal.");
+				if (!((*v)[k] > (*v)[k - 1]) && v->size() > 2 && (*v)[k] == (*v)[k - 1])
+					throw mca::Error(
+						string(v == &x ? "xs" : "ys") + " must rise; entries " + std::to_string(k - 1) + " and " + std::to_string(k)
+						+ " are equal.");
 		return locked([&] { return grid().addRectangle(m, x, y, blockOptions(name, hourglass, edgeViscosity)); });
 	});
 }
@@ -237,7 +243,9 @@ void McaGridEngine::setVelocities(int block, const vector<double>& v, const vect
 	if (block < 0 || block >= grid().blocks()) throw mca::Error("there is no block " + std::to_string(block) + ".");
 	const auto& b = grid().block(block);
 	if (shape.size() != 3 || shape[0] != b.nj + 1 || shape[1] != b.ni + 1 || shape[2] != 2)
-		throw mca::Error("block '" + b.options.name + "': velocity must be a pair or an array of shape (" + std::to_string(b.nj + 1) + ", " + std::to_string(b.ni + 1) + ", 2).");
+		throw mca::Error(
+			"block '" + b.options.name + "': velocity must be a pair or an array of shape (" + std::to_string(b.nj + 1) + ", "
+			+ std::to_string(b.ni + 1) + ", 2).");
 	size_t k = 0; // setVelocity asks row by row
 	grid().setVelocity(block, [&](double, double) {
 		k += 2;
@@ -280,17 +288,31 @@ py::object McaGridEngine::view(int block, const string& what)
 		} else
 			known = false;
 		if (!known)
-			throw mca::Error("what = '" + what + "' is unknown; it must be one of x, y, vx, vy, sxx, syy, sxy, plasticStrain, restArea, energy, temperature, pressure.");
-		if (!p) throw mca::Error("block '" + b.options.name + "' does not keep '" + what + "'" + (what == "energy" ? "; set account=True before the first block." : "; its material is not Johnson-Cook."));
+			throw mca::Error(
+				"what = '" + what
+				+ "' is unknown; it must be one of x, y, vx, vy, sxx, syy, sxy, plasticStrain, restArea, energy, temperature, pressure.");
+		if (!p)
+			throw mca::Error(
+				"block '" + b.options.name + "' does not keep '" + what + "'"
+				+ (what == "energy" ? "; set account=True before the first block." : "; its material is not Johnson-Cook."));
 		const Py_ssize_t rows = cells ? b.nj : b.nj + 1, columns = cells ? b.ni : b.ni + 1;
-		return sdk::makeArrayView({ const_cast<double*>(p), "d", Py_ssize_t(sizeof(double)), { rows, columns }, { Py_ssize_t(b.pitch * sizeof(double)), Py_ssize_t(sizeof(double)) }, owner, false });
+		return sdk::makeArrayView({ const_cast<double*>(p),
+		                            "d",
+		                            Py_ssize_t(sizeof(double)),
+		                            { rows, columns },
+		                            { Py_ssize_t(b.pitch * sizeof(double)), Py_ssize_t(sizeof(double)) },
+		                            owner,
+		                            false });
 	});
 }
 
 py::object McaGridEngine::gaugeHistory(int k)
 {
 	const auto h = locked([&] {
-		if (k < 0 || k >= grid().gauges()) throw mca::Error("McaGridEngine.gauge: number = " + std::to_string(k) + " must be from 0 to " + std::to_string(grid().gauges() - 1) + "; there are " + std::to_string(grid().gauges()) + " gauges.");
+		if (k < 0 || k >= grid().gauges())
+			throw mca::Error(
+				"McaGridEngine.gauge: number = " + std::to_string(k) + " must be from 0 to " + std::to_string(grid().gauges() - 1)
+				+ "; there are " + std::to_string(grid().gauges()) + " gauges.");
 		return grid().gauge(k).history;
 	});
 	static_assert(sizeof(mca::grid::Sample) == 10 * sizeof(double), "a sample is a row of ten numbers");

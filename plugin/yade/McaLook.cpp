@@ -19,7 +19,8 @@ bool runEndsHere(const Scene& s)
 namespace look {
 	Habit habitOf(const Engine& e)
 	{
-		if (dynamic_cast<const McaSolverEngine*>(&e) || dynamic_cast<const McaGridCoupler*>(&e) || dynamic_cast<const McaTimeStepper*>(&e)) return Habit::never;
+		if (dynamic_cast<const McaSolverEngine*>(&e) || dynamic_cast<const McaGridCoupler*>(&e) || dynamic_cast<const McaTimeStepper*>(&e))
+			return Habit::never;
 		if (dynamic_cast<const PeriodicEngine*>(&e)) return Habit::whenDue;
 		if (dynamic_cast<const PartialEngine*>(&e)) return Habit::givenIds;
 		// NewtonIntegrator moves bodies of its mask; McaEngine refuses one that would move automata

@@ -47,12 +47,14 @@ mca::Material McaMat::toMaterial() const
 		to.referenceTemperature = referenceTemperature;
 		to.heatPerWork          = heatCapacity > 0 ? taylorQuinney / (density * heatCapacity) : 0.;
 	}
-	m.fracture.strain = fractureStrain, m.fracture.spall = spallStrength, m.fracture.pairStress = pairStrength, m.fracture.mises = fractureStress, m.fracture.ratio = strengthRatio;
+	m.fracture.strain = fractureStrain, m.fracture.spall = spallStrength, m.fracture.pairStress = pairStrength, m.fracture.mises = fractureStress,
+	m.fracture.ratio = strengthRatio;
 	m.viscosity = { viscosityLinear, viscosityQuadratic };
 	m.friction  = std::tan(frictionAngle);
 	mca::validate(m, name);
 	pick("strengthDistribution", strengthDistribution, { "uniform", "normal", "weibull" });
-	if (!(strengthSpread >= 0 && strengthSpread < 0.5)) throw mca::Error("material '" + name + "': strengthSpread = " + std::to_string(strengthSpread) + " must be in [0, 0.5).");
+	if (!(strengthSpread >= 0 && strengthSpread < 0.5))
+		throw mca::Error("material '" + name + "': strengthSpread = " + std::to_string(strengthSpread) + " must be in [0, 0.5).");
 	return m;
 }
 
@@ -69,7 +71,8 @@ Real McaMat::yieldAt(Real eqps, Real rate, Real temperature) const
 
 Real McaMat::pressureAt(Real volumeRatio) const 
 {
-	if (!(volumeRatio > 0 && volumeRatio <= 1e6)) throw mca::Error("McaMat.pressure: volumeRatio = " + std::to_string(volumeRatio) + " must be above 0 and at most 1e6.");
+	if (!(volumeRatio > 0 && volumeRatio <= 1e6))
+		throw mca::Error("McaMat.pressure: volumeRatio = " + std::to_string(volumeRatio) + " must be above 0 and at most 1e6.");
 	return mca::pressure(toMaterial().eos, volumeRatio - 1.);
 }
 
@@ -92,7 +95,8 @@ void McaMat::refuseElastic(const char* what, Real asked, Real derived) const
 {
 	if (std::fabs(asked - derived) <= 1e-9 * std::fabs(derived)) return; // a copy of what stands there
 	std::ostringstream s;
-	s << "McaMat" << (label.empty() ? "" : " '" + label + "'") << ": " << what << " = " << asked << " cannot be set: it follows from density, bulkSoundSpeed and shearModulus (";
+	s << "McaMat" << (label.empty() ? "" : " '" + label + "'") << ": " << what << " = " << asked
+	  << " cannot be set: it follows from density, bulkSoundSpeed and shearModulus (";
 	(std::isfinite(derived) ? s << derived : s << "not all given yet") << "). Set those: G = E/(2(1+nu)), K = E/(3(1-2nu)) = density bulkSoundSpeed^2.";
 	throw std::invalid_argument(s.str());
 }

@@ -11,7 +11,7 @@ class McaLawState : public Serializable {
 public:
 	void postLoad(McaLawState&); ///< what is used as an index
 	// clang-format off
-	YADE_CLASS_BASE_DOC_ATTRS(McaLawState, Serializable, "What :yref:`McaDensity` keeps of an automaton from step to step.",
+	YADE_CLASS_BASE_DOC_ATTRS(McaLawState, Serializable, "What :yref:`McaLaw` keeps of an automaton from step to step.",
 		((int, flags, 0, Attr::readonly, "bits 0-5: link k holds; 8-13: it counts half; 16-21: it once held; 24: the automaton may touch something"))
 		((vector<int>, partner, , Attr::readonly, "body at the other end of link k; -1: never linked [6]"))
 		((Real, cell, 0, Attr::readonly, "volume at rest, Omega0 times weight [m2]"))
@@ -29,7 +29,8 @@ public:
 		((Real, diameter, 0, Attr::readonly, "with which the automaton was taken in [m]"))
 		((Real, moved, 0, Attr::readonly, "time step that led to the present position [s]"))
 		((Vector3r, from, Vector3r::Zero(), Attr::readonly, "position x, y [m] and turned angle [rad] before the last move"))
-		((Vector3r, expected, Vector3r::Zero(), Attr::readonly, "velocity x, y [m/s] and spin [rad/s] that the last move should have: another one was set by a script"))
+		((Vector3r, expected, Vector3r::Zero(), Attr::readonly, "velocity x, y [m/s] and spin [rad/s] that the last move should have: another one "
+		    "was set by a script"))
 		((Vector3r, results, Vector3r(0, 1, 0), Attr::readonly, "pressure [Pa], volume ratio [-] and stressZZ [Pa] as the law has left them"))
 		((Real, criterion, 0, Attr::readonly, "largest fracture criterion over its limit [-]; a pair breaks at a mean of 1"))
 	)
@@ -44,14 +45,18 @@ public:
 		((Real, pressure, 0, , "pressure, positive in compression [Pa]; output"))
 		((Real, volumeRatio, 1, , "J = volume / volume at rest [-]; output"))
 		((Real, equivalentStress, 0, , "Mises stress [Pa]; output"))
-		((Real, plasticStrain, 0, , "equivalent plastic strain [-]; read at every look (at the start as initial hardening), by :yref:`McaDensity` in every step"))
-		((Real, temperature, 298, , "temperature, for flow stresses that depend on it [K]; material.newAssocState() sets the reference temperature; read at every look, by :yref:`McaDensity` in every step"))
+		((Real, plasticStrain, 0, , "equivalent plastic strain [-]; read at every look (at the start as initial hardening), by :yref:`McaLaw` in "
+		    "every step"))
+		((Real, temperature, 298, , "temperature, for flow stresses that depend on it [K]; material.newAssocState() sets the reference temperature; "
+		    "read at every look, by :yref:`McaLaw` in every step"))
 		((Real, stressZZ, 0, , "out-of-plane deviatoric stress [Pa]; output"))
-		((Real, dissipated, 0, , "internal energy per mass, kept where the equation of state depends on it [J/kg]; output, read in every step by :yref:`McaDensity`"))
-		((Real, strength, 0, , "factor on the strengths of the material [-]; 0 when the automaton is taken in: drawn by the engine from the material's distribution and the engine's seed; read at every look, by :yref:`McaDensity` in every step"))
+		((Real, dissipated, 0, , "internal energy per mass, kept where the equation of state depends on it [J/kg]; output, read in every step by "
+		    ":yref:`McaLaw`"))
+		((Real, strength, 0, , "factor on the strengths of the material [-]; 0 when the automaton is taken in: drawn by the engine from the "
+		    "material's distribution and the engine's seed; read at every look, by :yref:`McaLaw` in every step"))
 		((int, links, 0, , "links that hold [-]; output"))
 		((int, brokenLinks, 0, , "links that broke [-]; output"))
-		((shared_ptr<McaLawState>, law, , Attr::hidden, "what :yref:`McaDensity` keeps of the automaton; empty with McaEngine"))
+		((shared_ptr<McaLawState>, law, , Attr::hidden, "what :yref:`McaLaw` keeps of the automaton; empty with McaEngine"))
 		,
 		createIndex();
 	)
@@ -87,12 +92,16 @@ public:
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(McaMat, FrictMat,
 		"Material of automata and of the Lagrangian grid: equation of state, plasticity, fracture, contact, viscosity. "
-		"Density [kg/m3] and frictionAngle [rad] are those of :yref:`FrictMat`; young and poisson follow from the constants below and refuse other values. "
+		"Density [kg/m3] and frictionAngle [rad] are those of :yref:`FrictMat`; young and poisson follow from the constants below and refuse other "
+		"values. "
 		"All constants are checked before they are used: finite (infinite only where that means 'never') and in range; NaN is refused. "
-		":yref:`McaEngine` reads all of them at every look, that is in the first step or call after a script could change something; :yref:`McaGridEngine` when a block is added, never again. "
-		":yref:`McaDensity` reads all of them in every step, so that a change between steps counts from the next one on, for links and contacts that exist as well; strengthSpread and "
+		":yref:`McaEngine` reads all of them at every look, that is in the first step or call after a script could change something; "
+		":yref:`McaGridEngine` when a block is added, never again. "
+		":yref:`McaLaw` reads all of them in every step, so that a change between steps counts from the next one on, for links and contacts that "
+		"exist as well; strengthSpread and "
 		"strengthDistribution are read when strengths are drawn, density moreover when an automaton is taken in.",
-		((Real, bulkSoundSpeed, 0, Attr::triggerPostLoad, "c0 of the shock adiabat D = c0 + b U [m/s]; bulk modulus K = density c0^2; read at every look, by a grid when the block is added"))
+		((Real, bulkSoundSpeed, 0, Attr::triggerPostLoad, "c0 of the shock adiabat D = c0 + b U [m/s]; bulk modulus K = density c0^2; read at every "
+		    "look, by a grid when the block is added"))
 		MCA_EOS_LAWS(MCA_ATTRIBUTES)
 		((string, eos, "shockAdiabat", , "equation of state:" MCA_EOS_LAWS(MCA_CHOICE) "; read at every look, by a grid when the block is added"))
 		((Real, shearModulus, 0, Attr::triggerPostLoad, "G [Pa]; read at every look, by a grid when the block is added"))
@@ -100,25 +109,37 @@ public:
 		MCA_FLOW_LAWS(MCA_ATTRIBUTES)
 		((Real, referenceTemperature, 298, , "initial and reference temperature [K]; read at every look, by a grid when the block is added"))
 		((Real, heatCapacity, 0, , "specific heat [J/kg/K]; 0: no heating; read at every look, by a grid when the block is added"))
-		((Real, taylorQuinney, 0.9, , "share of plastic work that becomes heat [-] (Taylor and Quinney 1934); read at every look, by a grid when the block is added"))
-		((Real, fractureStrain, std::numeric_limits<Real>::infinity(), , "plastic strain of a pair at which it unlinks [-]; read at every look, by a grid when the block is added"))
-		((Real, spallStrength, std::numeric_limits<Real>::infinity(), , "tensile pressure at which a pair unlinks [Pa]; read at every look, by a grid when the block is added"))
-		((Real, pairStrength, std::numeric_limits<Real>::infinity(), , "tensile normal stress of a pair at which it unlinks [Pa]; read at every look, by a grid when the block is added"))
-		((Real, fractureStress, std::numeric_limits<Real>::infinity(), , "Mises stress at which a pair unlinks; with strengthRatio a > 1 the two-parameter criterion 0.5 (a+1) sigma_eq + 1.5 (a-1) sigma_mean [Pa]; read at every look, by a grid when the block is added"))
-		((Real, strengthRatio, 1, , "a = compressive / tensile strength of the two-parameter criterion [-]; 1: Mises; read at every look, by a grid when the block is added"))
-		((Real, strengthSpread, 0, , "relative standard deviation of the strengths from automaton to automaton [-]; read when strengths are drawn, that is when a body is taken over for the first time"))
-		((string, strengthDistribution, "uniform", , "'uniform', 'normal' (cut at 3 deviations) or 'weibull'; read when strengths are drawn, that is when a body is taken over for the first time"))
+		((Real, taylorQuinney, 0.9, , "share of plastic work that becomes heat [-] (Taylor and Quinney 1934); read at every look, by a grid when the "
+		    "block is added"))
+		((Real, fractureStrain, std::numeric_limits<Real>::infinity(), , "plastic strain of a pair at which it unlinks [-]; read at every look, by a "
+		    "grid when the block is added"))
+		((Real, spallStrength, std::numeric_limits<Real>::infinity(), , "tensile pressure at which a pair unlinks [Pa]; read at every look, by a "
+		    "grid when the block is added"))
+		((Real, pairStrength, std::numeric_limits<Real>::infinity(), , "tensile normal stress of a pair at which it unlinks [Pa]; read at every "
+		    "look, by a grid when the block is added"))
+		((Real, fractureStress, std::numeric_limits<Real>::infinity(), , "Mises stress at which a pair unlinks; with strengthRatio a > 1 the "
+		    "two-parameter criterion 0.5 (a+1) sigma_eq + 1.5 (a-1) sigma_mean [Pa]; read at every look, by a grid when the block is added"))
+		((Real, strengthRatio, 1, , "a = compressive / tensile strength of the two-parameter criterion [-]; 1: Mises; read at every look, by a grid "
+		    "when the block is added"))
+		((Real, strengthSpread, 0, , "relative standard deviation of the strengths from automaton to automaton [-]; read when strengths are drawn, "
+		    "that is when a body is taken over for the first time"))
+		((string, strengthDistribution, "uniform", , "'uniform', 'normal' (cut at 3 deviations) or 'weibull'; read when strengths are drawn, that is "
+		    "when a body is taken over for the first time"))
 		((Real, viscosityLinear, 0.25, , "linear artificial viscosity c1 [-]; read at every look, by a grid when the block is added"))
 		((Real, viscosityQuadratic, 1.2, , "quadratic artificial viscosity c2 [-]; read at every look, by a grid when the block is added"))
 		,
 		createIndex();
 		,
-		.add_property("young", &McaMat::youngNow, &McaMat::setYoung, "Young's modulus [Pa]; output: follows from density, bulkSoundSpeed and shearModulus, and another value is refused.")
-		.add_property("poisson", &McaMat::poissonNow, &McaMat::setPoisson, "Poisson's ratio [-]; output: follows from density, bulkSoundSpeed and shearModulus, and another value is refused.")
+		.add_property("young", &McaMat::youngNow, &McaMat::setYoung, "Young's modulus [Pa]; output: follows from density, bulkSoundSpeed and "
+		    "shearModulus, and another value is refused.")
+		.add_property("poisson", &McaMat::poissonNow, &McaMat::setPoisson, "Poisson's ratio [-]; output: follows from density, bulkSoundSpeed and "
+		    "shearModulus, and another value is refused.")
 		.add_property("cP", &McaMat::longitudinalSpeed, "Longitudinal wave speed at rest [m/s].")
 		.add_property("cS", &McaMat::shearSpeed, "Shear wave speed at rest [m/s].")
-		.def("flowStress", &McaMat::yieldAt, (py::arg("plasticStrain"), py::arg("rate") = 1., py::arg("temperature") = 298.), "Yield stress [Pa] at plastic strain [-], strain rate [1/s] and temperature [K], by yieldModel.")
-		.def("pressure", &McaMat::pressureAt, (py::arg("volumeRatio")), "Pressure [Pa] at J = volume / volume at rest [-], by eos without internal energy; 'mieGruneisen': on the shock adiabat.")
+		.def("flowStress", &McaMat::yieldAt, (py::arg("plasticStrain"), py::arg("rate") = 1., py::arg("temperature") = 298.), "Yield stress [Pa] at "
+		    "plastic strain [-], strain rate [1/s] and temperature [K], by yieldModel.")
+		.def("pressure", &McaMat::pressureAt, (py::arg("volumeRatio")), "Pressure [Pa] at J = volume / volume at rest [-], by eos without internal "
+		    "energy; 'mieGruneisen': on the shock adiabat.")
 	)
 	// clang-format on
 	REGISTER_CLASS_INDEX(McaMat, FrictMat);

@@ -42,7 +42,10 @@ namespace {
 		return m && castTo<Sphere>(b.shape.get()) ? m->law.get() : nullptr;
 	}
 	/// dx, dy from the first to the second body [m]
-	Vector2r between(const Body& a, const Body& b) { return Vector2r(b.state->se3.position[0] - a.state->se3.position[0], b.state->se3.position[1] - a.state->se3.position[1]); }
+	Vector2r between(const Body& a, const Body& b)
+	{
+		return Vector2r(b.state->se3.position[0] - a.state->se3.position[0], b.state->se3.position[1] - a.state->se3.position[1]);
+	}
 	/// The pair overlaps though it was apart a step ago: it was looked for too late, and would start without push.
 	void checkFound(const Scene& scene, const Body& a, const Body& b, Real d)
 	{
@@ -50,7 +53,8 @@ namespace {
 		if (a.iterBorn == scene.iter || b.iterBorn == scene.iter || !(x.norm() < d * (1. - 1e-9)) || (x - scene.dt * v).norm() < d) return;
 		std::ostringstream s;
 		s << "automata " << a.id << " and " << b.id << " were found only when they were " << x.norm() / d
-		  << " diameters apart. Contacts must be known before they begin: Bo1_Sphere_Aabb needs aabbEnlargeFactor=1.4 and Ig2_Sphere_Sphere_ScGeom interactionDetectionFactor=1.4 (scenes.law2Engines); "
+		  << " diameters apart. Contacts must be known before they begin: Bo1_Sphere_Aabb needs aabbEnlargeFactor=1.4 and Ig2_Sphere_Sphere_ScGeom "
+		     "interactionDetectionFactor=1.4 (scenes.law2Engines); "
 		     "bodies faster than 0.4 diameters per step need a smaller O.dt.";
 		McaPhys::leaveError(s.str());
 	}
@@ -62,7 +66,9 @@ namespace {
 void McaPhys::postLoad(McaPhys&)
 {
 	if (slot < 0 || slot >= mca::nLinks)
-		throw mca::Error("McaPhys: slot = " + std::to_string(slot) + " in the file must be from 0 to " + std::to_string(mca::nLinks - 1) + "; the file is damaged or was edited.");
+		throw mca::Error(
+			"McaPhys: slot = " + std::to_string(slot) + " in the file must be from 0 to " + std::to_string(mca::nLinks - 1)
+			+ "; the file is damaged or was edited.");
 }
 
 void McaLawState::postLoad(McaLawState&)
@@ -98,7 +104,7 @@ void McaPhys::setWall(const McaMat& m, Real otherAngle, Real diameter)
 	friction     = std::tan(std::min(m.frictionAngle, otherAngle));
 }
 
-// The functors' own pointer to the scene is stale where McaDensity makes the first links of a loaded scene: InteractionLoop has not run yet.
+// The functors' own pointer to the scene is stale where McaLaw makes the first links of a loaded scene: InteractionLoop has not run yet.
 void Ip2_McaMat_McaMat_McaPhys::go(const shared_ptr<Material>& m1, const shared_ptr<Material>& m2, const shared_ptr<Interaction>& I)
 {
 	if (I->phys) return;
@@ -116,7 +122,7 @@ void Ip2_McaMat_McaMat_McaPhys::go(const shared_ptr<Material>& m1, const shared_
 	p->d     = 0.5 * (da + db);
 	p->share = da / (da + db);
 	const auto *la = lawState(A), *lb = lawState(B);
-	if (!la || !lb || McaPhys::linking || !McaPhys::mayTouch(A, *la, B, *lb)) return; // McaDensity takes it from here, and gives the pair its constants
+	if (!la || !lb || McaPhys::linking || !McaPhys::mayTouch(A, *la, B, *lb)) return; // McaLaw takes it from here, and gives the pair its constants
 	checkFound(now, A, B, p->d);
 	p->startContact(between(A, B).norm());
 }
@@ -170,18 +176,22 @@ bool Law2_ScGeom_McaPhys_Mca::go(shared_ptr<IGeom>& geom, shared_ptr<IPhys>& phy
 
 	const McaLawState *la = lawState(A), *lb = lawState(B);
 	if (!la || !lb) { // a file that was edited
-		McaPhys::leaveError("bodies " + std::to_string(A.id) + " and " + std::to_string(B.id) + " have the contact of two automata but are not both automata; the saved file was edited or damaged.");
+		McaPhys::leaveError(
+			"bodies " + std::to_string(A.id) + " and " + std::to_string(B.id)
+			+ " have the contact of two automata but are not both automata; the saved file was edited or damaged.");
 		return true;
 	}
 	const McaLawState &a = *la, &b = *lb;
 	const State &      sa = *A.state, &sb = *B.state;
-	const Real         dx = sb.se3.position[0] - sa.se3.position[0], dy = sb.se3.position[1] - sa.se3.position[1], r2 = mca::dot(mca::Vec<Real> { dx, dy }, mca::Vec<Real> { dx, dy }), inv = 1. / r2;
+	const Real         dx = sb.se3.position[0] - sa.se3.position[0], dy = sb.se3.position[1] - sa.se3.position[1],
+		   r2 = mca::dot(mca::Vec<Real> { dx, dy }, mca::Vec<Real> { dx, dy }), inv = 1. / r2;
 	p.force = p.normalForce = p.shearForce = Vector3r::Zero();
 	p.torque = Vector2r::Zero(), p.heatRate = 0, p.viscousForce = Vector2r::Zero();
 	if (!p.linked && !(p.active && p.touching(r2))) return p.linked || r2 < sqr(range * p.d); // returning false erases the pair
 
 	const mca::Vec<Real>  r { dx, dy };
-	const Real            w = p.linked && p.half ? 0.5 : 1., area = mca::pairArea(w, p.d), along = mca::dot(r, mca::Vec<Real> { sb.vel[0] - sa.vel[0], sb.vel[1] - sa.vel[1] });
+	const Real            w = p.linked && p.half ? 0.5 : 1., area = mca::pairArea(w, p.d),
+		   along = mca::dot(r, mca::Vec<Real> { sb.vel[0] - sa.vel[0], sb.vel[1] - sa.vel[1] });
 	const mca::Pair<Real> both { area * (p.s[0] + p.s[1]), area * (p.tau[0] + p.tau[1]) };
 	const Real            q = w * mca::viscousCoefficient(along, inv, p.viscLinear, p.viscQuadratic, Lattice::width(p.d));
 	mca::Vec<Real>        f = mca::dispatch(VolumeRule(a.rule), [&](auto rule) {

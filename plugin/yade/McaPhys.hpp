@@ -21,21 +21,24 @@ public:
 	/// Functors run in a parallel region, where nothing may be thrown: they leave the first error here, and McaForces throws it before anything moves.
 	static void   leaveError(const string& what);
 	static string takeError(); ///< empty when there is none
-	static bool   linking; ///< McaDensity makes links: pairs that are made now need no search
+	static bool   linking; ///< McaLaw makes links: pairs that are made now need no search
 	void          postLoad(McaPhys&); ///< what is used as an index
-	// of McaDensity: the materials that the constants of the pair are made of, and which state of them
+	// of McaLaw: the materials that the constants of the pair are made of, and which state of them
 	const Material* madeOf[2] = { nullptr, nullptr };
 	long            revision  = -1;
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR(McaPhys, NormShearPhys,
-		"Pair of two automata, or of an automaton and a body that is none (facet, wall, box, grain). Pairs of numbers belong to the first and second body. "
-		"normalForce and shearForce are the parts of the force on the second body along and across the line of centres [N/m]. All attributes are outputs of :yref:`McaDensity` and the functors; the "
+		"Pair of two automata, or of an automaton and a body that is none (facet, wall, box, grain). Pairs of numbers belong to the first and second "
+		"body. "
+		"normalForce and shearForce are the parts of the force on the second body along and across the line of centres [N/m]. All attributes are "
+		"outputs of :yref:`McaLaw` and the functors; the "
 		"constants of the pair follow its materials from step to step.",
-		((bool, linked, false, Attr::readonly, "the link holds; only McaDensity makes links, so a broken pair stays broken"))
+		((bool, linked, false, Attr::readonly, "the link holds; only McaLaw makes links, so a broken pair stays broken"))
 		((bool, active, false, Attr::readonly, "not linked, and both automata may touch something"))
 		((bool, wall, false, Attr::readonly, "one body is no automaton: penalty contact kn, ks with Coulomb friction"))
 		((bool, half, false, Attr::readonly, "link along a weighted rim, which counts half"))
-		((int, slot, 0, Attr::readonly, "place of the link around the first body, 60 slot degrees in the frame of the packing; (slot + 3) % 6 around the second"))
+		((int, slot, 0, Attr::readonly, "place of the link around the first body, 60 slot degrees in the frame of the packing; (slot + 3) % 6 around "
+		    "the second"))
 		((Vector2r, s, Vector2r::Zero(), Attr::readonly, "J times normal deviatoric stress of each side [Pa]"))
 		((Vector2r, tau, Vector2r::Zero(), Attr::readonly, "J times shear stress of each side [Pa]"))
 		((Vector2r, rest, Vector2r::Zero(), Attr::readonly, "contact: rest distance of each side [m]"))
@@ -62,7 +65,8 @@ public:
 	void go(const shared_ptr<Material>& m1, const shared_ptr<Material>& m2, const shared_ptr<Interaction>& I) override;
 	FUNCTOR2D(McaMat, McaMat);
 	// clang-format off
-	YADE_CLASS_BASE_DOC(Ip2_McaMat_McaMat_McaPhys, IPhysFunctor, "Makes :yref:`McaPhys` of two automata. A body with McaMat that is no Sphere is a wall. No attributes of its own.")
+	YADE_CLASS_BASE_DOC(Ip2_McaMat_McaMat_McaPhys, IPhysFunctor, "Makes :yref:`McaPhys` of two automata. A body with McaMat that is no Sphere is a wall. "
+	    "No attributes of its own.")
 	// clang-format on
 };
 REGISTER_SERIALIZABLE(Ip2_McaMat_McaMat_McaPhys);
@@ -75,8 +79,10 @@ public:
 	DEFINE_FUNCTOR_ORDER_2D(FrictMat, McaMat);
 	// clang-format off
 	YADE_CLASS_BASE_DOC(Ip2_FrictMat_McaMat_McaPhys, IPhysFunctor,
-		"Makes :yref:`McaPhys` of an automaton and a facet, wall, box or grain of FrictMat: a penalty contact of the automaton's moduli, kn = (K + 4G/3) S0/(d/2) and "
-		"ks = G S0/(d/2) [N/m per m], with the smaller friction of both. The other body is taken as rigid. Either order of the two bodies will do. The materials are read when the pair is made, "
+		"Makes :yref:`McaPhys` of an automaton and a facet, wall, box or grain of FrictMat: a penalty contact of the automaton's moduli, kn = (K + "
+		"4G/3) S0/(d/2) and "
+		"ks = G S0/(d/2) [N/m per m], with the smaller friction of both. The other body is taken as rigid. Either order of the two bodies will do. "
+		"The materials are read when the pair is made, "
 		"and anew when a McaMat has changed.")
 	// clang-format on
 };
@@ -87,9 +93,11 @@ public:
 	bool go(shared_ptr<IGeom>& geom, shared_ptr<IPhys>& phys, Interaction* I) override;
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(Law2_ScGeom_McaPhys_Mca, LawFunctor,
-		"Force of a pair from the pressures and pair stresses that :yref:`McaDensity` has found, and its viscosity; of an automaton and a wall from the overlap. It leaves the force in "
+		"Force of a pair from the pressures and pair stresses that :yref:`McaLaw` has found, and its viscosity; of an automaton and a wall from the "
+		"overlap. It leaves the force in "
 		"the pair, :yref:`McaForces` adds it to the bodies in a fixed order. Pairs that are farther apart than range are forgotten.",
-		((Real, range, 1.45, , "distance at which a contact is given up, over the diameter [-], 1.1 to 10; above the interactionDetectionFactor of Ig2_Sphere_Sphere_ScGeom. Read in every step"))
+		((Real, range, 1.45, , "distance at which a contact is given up, over the diameter [-], 1.1 to 10; above the interactionDetectionFactor of "
+		    "Ig2_Sphere_Sphere_ScGeom. Read in every step"))
 	)
 	// clang-format on
 	FUNCTOR2D(ScGeom, McaPhys);

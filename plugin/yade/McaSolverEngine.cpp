@@ -81,12 +81,22 @@ void McaSolverEngine::findCoupler(Scene* scene)
 		coupled = true;
 		c->prepare(scene);
 	}
-	if (scene->isPeriodic) throw mca::Error(getClassName() + ": O.periodic is on, which this engine does not know; set O.periodic = False and hold or drive the sides.");
-	if (me > 1) throw mca::Error(getClassName() + ": the same engine stands " + std::to_string(me) + " times in O.engines, which would make several steps in one; leave it there once.");
+	if (scene->isPeriodic)
+		throw mca::Error(getClassName() + ": O.periodic is on, which this engine does not know; set O.periodic = False and hold or drive the sides.");
+	if (me > 1)
+		throw mca::Error(
+			getClassName() + ": the same engine stands " + std::to_string(me)
+			+ " times in O.engines, which would make several steps in one; leave it there once.");
 	if (!coupled && carriesRows())
-		throw mca::Error(getClassName() + ": a McaGridCoupler has tied a row to it and is now dead or not in O.engines; a tied row cannot move alone. Put the coupler back, or start from a scene without it.");
+		throw mca::Error(
+			getClassName()
+			+ ": a McaGridCoupler has tied a row to it and is now dead or not in O.engines; a tied row cannot move alone. Put the coupler back, or "
+		          "start from a scene without it.");
 	if (!coupled && !stepper && setsStep() && other)
-		throw mca::Error(getClassName() + " and " + other->getClassName() + ": both set O.dt, so time would not be that of either; put a McaTimeStepper first in O.engines, or set adaptive=False in all but one.");
+		throw mca::Error(
+			getClassName() + " and " + other->getClassName()
+			+ ": both set O.dt, so time would not be that of either; put a McaTimeStepper first in O.engines, or set adaptive=False in all but "
+		          "one.");
 }
 
 // Breaking links and first contacts can halve the stable step at once. Nothing has moved yet, so a time stepper that comes before this engine may

@@ -46,13 +46,18 @@ public:
 		return locked([&] { return criticalTimeStep(); });
 	}
 	// clang-format off
-	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(McaSolverEngine, GlobalEngine, "Base of engines that integrate unknowns of their own (:yref:`McaEngine`, :yref:`McaGridEngine`).",
-		((bool, coupled, false, Attr::readonly, "a coupler or time stepper drives this engine: it computes forces only and leaves O.dt alone; found anew in every step"))
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(McaSolverEngine, GlobalEngine, "Base of engines that integrate unknowns of their own (:yref:`McaEngine`, "
+	    ":yref:`McaGridEngine`).",
+		((bool, coupled, false, Attr::readonly, "a coupler or time stepper drives this engine: it computes forces only and leaves O.dt alone; found "
+		    "anew in every step"))
 		, ,
-		.def("settle", &McaSolverEngine::settleNow, "Bring the bodies of the present scene up to date with the engines that move them; does nothing while the loop runs elsewhere.").staticmethod("settle")
-		.def("endStepUnderWay", &McaSolverEngine::endStepUnderWay, "After O.pause(): wait until the step under way is over, then settle().").staticmethod("endStepUnderWay")
+		.def("settle", &McaSolverEngine::settleNow, "Bring the bodies of the present scene up to date with the engines that move them; does nothing "
+		    "while the loop runs elsewhere.").staticmethod("settle")
+		.def("endStepUnderWay", &McaSolverEngine::endStepUnderWay, "After O.pause(): wait until the step under way is over, then "
+		    "settle().").staticmethod("endStepUnderWay")
 		.def("inLoop", &McaSolverEngine::inLoop, "Whether this is the thread that makes the steps (True in a PyRunner).").staticmethod("inLoop")
-		.add_property("criticalTimeStep", &McaSolverEngine::safeCriticalTimeStep, "Largest stable time step [s] at the present state; infinity when there is nothing to move.")
+		.add_property("criticalTimeStep", &McaSolverEngine::safeCriticalTimeStep, "Largest stable time step [s] at the present state; infinity when "
+		    "there is nothing to move.")
 	)
 	// clang-format on
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "McaTimeStepper.hpp"
 #include <kernels/automaton/limit.hpp>
-#include "McaDensity.hpp"
+#include "McaLaw.hpp"
 #include "McaEngine.hpp"
 #include <core/Scene.hpp>
 #include <pkg/common/Sphere.hpp>
@@ -12,7 +12,9 @@ YADE_PLUGIN((McaTimeStepper));
 bool McaTimeStepper::isActivated()
 {
 	guarded([&] {
-		if (timeStepUpdateInterval < 1 || timeStepUpdateInterval > 2147483647u) throw mca::Error("McaTimeStepper: timeStepUpdateInterval = " + std::to_string(int(timeStepUpdateInterval)) + " must be 1 or more steps.");
+		if (timeStepUpdateInterval < 1 || timeStepUpdateInterval > 2147483647u)
+			throw mca::Error(
+				"McaTimeStepper: timeStepUpdateInterval = " + std::to_string(int(timeStepUpdateInterval)) + " must be 1 or more steps.");
 	});
 	return TimeStepper::isActivated();
 }
@@ -45,7 +47,7 @@ void McaTimeStepper::choose(Scene* scene)
 		if (!s || s->dead) continue;
 		s->prepare(scene);
 		s->stepIsSet();
-		automata |= dynamic_cast<McaEngine*>(s) || dynamic_cast<McaDensity*>(s);
+		automata |= dynamic_cast<McaEngine*>(s) || dynamic_cast<McaLaw*>(s);
 		const Real t = s->safeCriticalTimeStep();
 		if (t < found) found = t, who = s->getClassName() + (s->label.empty() ? "" : " " + s->label);
 	}

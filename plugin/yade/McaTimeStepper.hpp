@@ -16,9 +16,11 @@ private:
 public:
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(McaTimeStepper, TimeStepper,
-		"Sets O.dt to the smallest of all stable steps times a factor, growing at most by a factor from step to step: those of :yref:`McaEngine`, :yref:`McaDensity` and :yref:`McaGridEngine`, and of the bodies of "
+		"Sets O.dt to the smallest of all stable steps times a factor, growing at most by a factor from step to step: those of :yref:`McaEngine`, "
+		":yref:`McaLaw` and :yref:`McaGridEngine`, and of the bodies of "
 		":yref:`McaMat` when none of them has them. Tied nodes need no smaller one: their mass is at least that of both sides together. "
-		"Where the stable step of automata falls by more than the factor within one step (links break, bodies meet), O.dt is shortened before anything moves. "
+		"Where the stable step of automata falls by more than the factor within one step (links break, bodies meet), O.dt is shortened before "
+		"anything moves. "
 		"Put it first in O.engines. It switches the engines' own `adaptive` off.",
 		((Real, factor, 0.4, , "share of the largest stable time step [-], above 0 and at most 1; read in every step (every timeStepUpdateInterval)"))
 		((Real, growth, 1.1, , "largest ratio of a step to the one before [-], above 1; read in every step (every timeStepUpdateInterval)"))

@@ -11,7 +11,7 @@ import numpy as np
 from yade import O, utils
 from yade.wrapper import (Bo1_Facet_Aabb, Bo1_Sphere_Aabb, ForceResetter, FrictMat, Ig2_Facet_Sphere_ScGeom, Ig2_Sphere_Sphere_ScGeom, InsertionSortCollider, InteractionLoop,
                           NewtonIntegrator)
-from yade_mca import (Ip2_FrictMat_McaMat_McaPhys, Ip2_McaMat_McaMat_McaPhys, Law2_ScGeom_McaPhys_Mca, McaDensity, McaForces, McaTimeStepper, materials, packings)
+from yade_mca import (Ip2_FrictMat_McaMat_McaPhys, Ip2_McaMat_McaMat_McaPhys, Law2_ScGeom_McaPhys_Mca, McaLaw, McaForces, McaTimeStepper, materials, packings)
 from yade_mca.expected import expect
 
 utils.readParamsFromTable(noTableOk=True, spacing=0.5e-3, tolerance=0.15)
@@ -31,7 +31,7 @@ O.engines = [
         ForceResetter(),
         InsertionSortCollider([Bo1_Sphere_Aabb(aabbEnlargeFactor=1.4), Bo1_Facet_Aabb()]),
         McaTimeStepper(factor=0.3),
-        McaDensity(),
+        McaLaw(),
         InteractionLoop(
                 [Ig2_Sphere_Sphere_ScGeom(interactionDetectionFactor=1.4), Ig2_Facet_Sphere_ScGeom()], [Ip2_McaMat_McaMat_McaPhys(), Ip2_FrictMat_McaMat_McaPhys()],
                 [Law2_ScGeom_McaPhys_Mca()]

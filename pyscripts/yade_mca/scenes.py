@@ -31,7 +31,7 @@ STEEPEST = math.radians(75)  #: largest obliquity of the rod [rad]
 def law2Engines(volumeRule='affine', stepFactor=None, **newton):
 	"""Engines that move automata by the law in YADE's own loop, beside walls, facets and boxes; put them into O.engines. Slow: McaEngine is the fast road.
 
-	volumeRule: of McaDensity. stepFactor: share of the largest stable time step for a McaTimeStepper; None: the script sets O.dt [s].
+	volumeRule: of McaLaw. stepFactor: share of the largest stable time step for a McaTimeStepper; None: the script sets O.dt [s].
 	newton: attributes of NewtonIntegrator, e.g. gravity=(0, -9.81, 0) [m/s2].
 	"""
 	oneOf('volumeRule', volumeRule, ('affine', 'inversePower', 'meanDistance'))
@@ -41,7 +41,7 @@ def law2Engines(volumeRule='affine', stepFactor=None, **newton):
 	geometry = [make('Ig2_Sphere_Sphere_ScGeom', interactionDetectionFactor=1.4), make('Ig2_Facet_Sphere_ScGeom'), make('Ig2_Wall_Sphere_ScGeom'), make('Ig2_Box_Sphere_ScGeom')]
 	laws = [make('Ip2_McaMat_McaMat_McaPhys'), make('Ip2_FrictMat_McaMat_McaPhys')], [make('Law2_ScGeom_McaPhys_Mca')]
 	stepper = [make('McaTimeStepper', factor=stepFactor)] if stepFactor is not None else []
-	return [make('ForceResetter'), make('InsertionSortCollider', bounds), *stepper, make('McaDensity', volumeRule=volumeRule), make('InteractionLoop', geometry, *laws),
+	return [make('ForceResetter'), make('InsertionSortCollider', bounds), *stepper, make('McaLaw', volumeRule=volumeRule), make('InteractionLoop', geometry, *laws),
 	        make('McaForces'), make('NewtonIntegrator', damping=0, **newton)]
 
 

@@ -83,9 +83,9 @@ def test_kernelsHaveValuesInValuesOut(folder):
 #: functions that a formula of the law would need -> where else they may stand, with the reason
 ELSEWHERE = {
         'yade/McaBodies.cpp': 'scattered strengths',
-        'yade/McaDensity.cpp': 'distances in messages and checks',
-        'yade/McaDensityFracture.cpp': 'a distance',
-        'yade/McaDensity.hpp': 'a distance',
+        'yade/McaLaw.cpp': 'distances in messages and checks',
+        'yade/McaLawFracture.cpp': 'a distance',
+        'yade/McaLaw.hpp': 'a distance',
         'yade/McaPhys.cpp': 'unit normal for YADE',
         'automata/build.cpp': 'distances of the packing',
         'automata/fracture.cpp': 'a distance',

@@ -24,7 +24,8 @@ Material steel(YieldKind kind)
 	m.yield.kind = kind, m.yield.yieldStress = 0.792e9, m.yield.hardeningModulus = 0.5e9;
 	if (kind == YieldKind::johnsonCook) {
 		Yield& y = m.yield;
-		y.kind = YieldKind::johnsonCook, y.yieldStress = 0.792e9, y.hardeningModulus = 0.51e9, y.hardeningExponent = 0.26, y.rateCoefficient = 0.014, y.thermalSoftening = 1.03;
+		y.kind = YieldKind::johnsonCook, y.yieldStress = 0.792e9, y.hardeningModulus = 0.51e9, y.hardeningExponent = 0.26, y.rateCoefficient = 0.014,
+		y.thermalSoftening = 1.03;
 		y.meltTemperature = 1793., y.heatPerWork = 2.4e-7;
 	}
 	return m;
@@ -73,7 +74,8 @@ template <YieldKind kind> void step(benchmark::State& state)
 		advance(*s, 1e-8);
 	const double each = 1. / (double(n) * n * double(state.iterations()));
 	const auto&  c    = s->counters;
-	state.counters["ns_per_automaton"]     = benchmark::Counter(double(n) * n * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+	state.counters["ns_per_automaton"] =
+		benchmark::Counter(double(n) * n * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 	state.counters["cpu_ns_per_automaton"] = (double(std::clock()) - clocks) / CLOCKS_PER_SEC * 1e9 * each;
 	state.counters["density"]              = (c.nsDensity - before.nsDensity) * each;
 	state.counters["stress"]               = (c.nsStress - before.nsStress) * each;

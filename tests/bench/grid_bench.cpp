@@ -25,7 +25,8 @@ std::unique_ptr<Grid> scene(Feature f, int n, int threads)
 	if (f == Feature::bare) m.yield.kind = YieldKind::elastic, m.viscosity = { 0., 0. }, o.hourglass = 0;
 	if (f == Feature::johnsonCook) {
 		Yield& y = m.yield;
-		y.kind = YieldKind::johnsonCook, y.yieldStress = 0.792e9, y.hardeningModulus = 0.51e9, y.hardeningExponent = 0.26, y.rateCoefficient = 0.014, y.thermalSoftening = 1.03;
+		y.kind = YieldKind::johnsonCook, y.yieldStress = 0.792e9, y.hardeningModulus = 0.51e9, y.hardeningExponent = 0.26, y.rateCoefficient = 0.014,
+		y.thermalSoftening = 1.03;
 		y.meltTemperature = 1793., y.heatPerWork = 2.4e-7;
 	}
 	m.eos.kind = f == Feature::mieGrueneisen ? EosKind::mieGruneisen : EosKind::shockAdiabat;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Steps of a block of automata with one feature present or absent, for counting instructions (valgrind --tool=callgrind): tests/python/test_skip_instructions.py.
+// Steps of a block of automata with one feature present or absent, for counting instructions (valgrind --tool=callgrind):
+// tests/python/test_skip_instructions.py.
 //   skip_count FEATURE STEPS
 #include "../unit/automata_scene.hpp"
 #include <iostream>

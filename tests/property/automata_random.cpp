@@ -16,17 +16,21 @@ struct Scene {
 
 void showValue(const Scene& s, std::ostream& o)
 {
-	o << s.nx << " x " << s.ny << " and " << s.second << " rows, seed " << s.seed << ", yield " << s.kind << ", rule " << s.rule << (s.viscous ? ", viscous" : "") << (s.breaks ? ", breaks" : "")
-	  << (s.unlike ? ", unlike" : "") << ", angle " << s.angle << ", speed " << s.speed << ", amplitude " << s.amplitude;
+	o << s.nx << " x " << s.ny << " and " << s.second << " rows, seed " << s.seed << ", yield " << s.kind << ", rule " << s.rule
+	  << (s.viscous ? ", viscous" : "") << (s.breaks ? ", breaks" : "") << (s.unlike ? ", unlike" : "") << ", angle " << s.angle << ", speed " << s.speed
+	  << ", amplitude " << s.amplitude;
 }
 
 rc::Gen<Scene> scenes()
 {
 	const auto share = [](double most) { return rc::gen::map(rc::gen::inRange(0, 41), [most](int k) { return most * k / 40; }); };
-	return rc::gen::build<Scene>(rc::gen::set(&Scene::nx, rc::gen::inRange(1, 16)), rc::gen::set(&Scene::ny, rc::gen::inRange(1, 14)), rc::gen::set(&Scene::second, rc::gen::inRange(0, 8)),
-	                             rc::gen::set(&Scene::seed, rc::gen::inRange(1u, 100000u)), rc::gen::set(&Scene::kind, rc::gen::inRange(0, 4)), rc::gen::set(&Scene::rule, rc::gen::inRange(0, 3)),
-	                             rc::gen::set(&Scene::viscous, rc::gen::arbitrary<bool>()), rc::gen::set(&Scene::breaks, rc::gen::arbitrary<bool>()), rc::gen::set(&Scene::unlike, rc::gen::arbitrary<bool>()),
-	                             rc::gen::set(&Scene::angle, share(2 * M_PI)), rc::gen::set(&Scene::speed, share(600.)), rc::gen::set(&Scene::amplitude, share(60.)));
+	return rc::gen::build<Scene>(
+		rc::gen::set(&Scene::nx, rc::gen::inRange(1, 16)), rc::gen::set(&Scene::ny, rc::gen::inRange(1, 14)),
+		rc::gen::set(&Scene::second, rc::gen::inRange(0, 8)), rc::gen::set(&Scene::seed, rc::gen::inRange(1u, 100000u)),
+		rc::gen::set(&Scene::kind, rc::gen::inRange(0, 4)), rc::gen::set(&Scene::rule, rc::gen::inRange(0, 3)),
+		rc::gen::set(&Scene::viscous, rc::gen::arbitrary<bool>()), rc::gen::set(&Scene::breaks, rc::gen::arbitrary<bool>()),
+		rc::gen::set(&Scene::unlike, rc::gen::arbitrary<bool>()), rc::gen::set(&Scene::angle, share(2 * M_PI)),
+		rc::gen::set(&Scene::speed, share(600.)), rc::gen::set(&Scene::amplitude, share(60.)));
 }
 
 /// Units: lengths times `length`, times times `duration`, masses (per thickness: density times length squared) by `density`. The scene turned by `turn`.

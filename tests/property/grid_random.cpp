@@ -17,8 +17,9 @@ struct Scene {
 
 void showValue(const Scene& s, std::ostream& o)
 {
-	o << s.blocks << " blocks of " << s.ni << " x " << s.nj << ", seed " << s.seed << ", yield " << s.kind << ", loads " << s.loads << (s.mie ? ", mieGrueneisen" : "")
-	  << (s.edge ? ", edge" : "") << (s.hourglass ? ", hourglass" : "") << (s.viscosity ? ", viscosity" : "") << ", skew " << s.skew << ", speed " << s.speed;
+	o << s.blocks << " blocks of " << s.ni << " x " << s.nj << ", seed " << s.seed << ", yield " << s.kind << ", loads " << s.loads
+	  << (s.mie ? ", mieGrueneisen" : "") << (s.edge ? ", edge" : "") << (s.hourglass ? ", hourglass" : "") << (s.viscosity ? ", viscosity" : "")
+	  << ", skew " << s.skew << ", speed " << s.speed;
 }
 
 rc::Gen<Scene> scenes()
@@ -78,7 +79,7 @@ RC_GTEST_PROP(GridRandom, EnergyAndMomentumClose, ())
 	for (int k = 0; k < 60; k++) {
 		g.step((0.2 + 0.1 * (k % 4)) * g.criticalTimeStep());
 		const Energy e = g.energy();
-		work           = std::max(work, e.kinetic + std::fabs(e.internal) + std::fabs(e.workLoads) + std::fabs(e.workConstraints) + std::fabs(e.workViscous));
+		work = std::max(work, e.kinetic + std::fabs(e.internal) + std::fabs(e.workLoads) + std::fabs(e.workConstraints) + std::fabs(e.workViscous));
 		impulse        = std::max(impulse, std::fabs(e.impulseX) + std::fabs(e.impulseY));
 	}
 	double mass = 0;

@@ -122,7 +122,8 @@ RC_GTEST_PROP(InterfaceProperty, balancesAreExact, ())
 	Coupled      C(m, angle, h, cells, *rc::gen::arbitrary<unsigned>());
 	C.step(0.1);
 	const auto start = C.sums();
-	const double energy = start.kinetic, momentum = std::sqrt(2. * start.kinetic * 7830. * 1e-6 * (6 * h * cells + 5 * h * h * cells)), length = 1e-3 * (h * cells + 5 * h + 6);
+	const double energy = start.kinetic, momentum = std::sqrt(2. * start.kinetic * 7830. * 1e-6 * (6 * h * cells + 5 * h * h * cells)),
+		     length = 1e-3 * (h * cells + 5 * h + 6);
 	double       factor = 0.1;
 	for (int k = 0; k < 150; k++) {
 		factor = std::min(0.5, factor * (1. + 0.001 * *rc::gen::inRange(0, 100)));

@@ -105,7 +105,7 @@ def holders():
 	        'McaGridCoupler': [('coupled', coupledScene, engineOf('McaGridCoupler'))], 'McaMat': road('material'), 'McaState': road('state'),
 	        'McaTimeStepper': [('coupled', coupledScene, engineOf('McaTimeStepper'))], 'McaPhys': [('law2', law2Scene, wallContact)]
 	}
-	for name in 'McaDensity', 'McaForces': out[name] = [('law2', law2Scene, engineOf(name))]
+	for name in 'McaLaw', 'McaForces': out[name] = [('law2', law2Scene, engineOf(name))]
 	for name in 'Ip2_McaMat_McaMat_McaPhys', 'Ip2_FrictMat_McaMat_McaPhys', 'Law2_ScGeom_McaPhys_Mca': out[name] = [('law2', law2Scene, functorOf(name))]
 	return out
 

@@ -17,7 +17,7 @@ def engines(road, dt, rule='affine', **newton):
 
 def density():
 	from yade import O
-	return next(e for e in O.engines if type(e).__name__ == 'McaDensity')
+	return next(e for e in O.engines if type(e).__name__ == 'McaLaw')
 
 
 def impact(speed=400., n=10, exactMass=False, **steel):

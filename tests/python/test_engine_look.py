@@ -151,7 +151,7 @@ def test_everyFieldHasOneNumberPerBody(plugin):
 	for name in ('x', 'y', 'vx', 'vy', 'omega', 'angle', 'mass', 'pressure', 'volumeRatio', 'equivalentStress', 'plasticStrain', 'temperature', 'stressZZ', 'fx', 'fy', 'links', 'brokenLinks', 'strength', 'diameter', 'weight', 'material'):
 		f = e.field(name)
 		assert f.shape == (len(ids), ) and np.isfinite(f).all(), name
-	with pytest.raises(RuntimeError, match="name = 'speed' is unknown; it must be one of angle"):
+	with pytest.raises(RuntimeError, match="name = 'speed' is unknown; it must be one of x, y"):
 		e.field('speed')
 
 
@@ -165,7 +165,7 @@ def test_severalFieldsAreThoseOfOneLook(plugin):
 	assert list(found) == ['ids', *names] and found['ids'].dtype.kind == 'i' and np.array_equal(found['ids'], np.sort(np.concatenate(ids)))
 	for name in names: assert np.array_equal(found[name], e.field(name)), name
 	assert e.fields([]) == {} and list(e.fields(('x', 'x'))) == ['x']
-	with pytest.raises(RuntimeError, match="McaEngine.fields: names: name = 'speed' is unknown; it must be one of angle"):
+	with pytest.raises(RuntimeError, match="McaEngine.fields: names: name = 'speed' is unknown; it must be one of x, y"):
 		e.fields(['x', 'speed'])
 	for wrong in ('x', None, 5, [5], ['x', None], {'x': 1}):
 		with pytest.raises(TypeError, match='McaEngine.fields: names must be a list or tuple of texts'):

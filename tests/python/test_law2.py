@@ -181,10 +181,10 @@ def test_timeStepper(plugin):
 	scene.engines('law2', 1e-9)
 	O.engines = [McaTimeStepper(factor=0.4)] + O.engines
 	O.run(60, True)
-	d = next(e for e in O.engines if type(e).__name__ == 'McaDensity')
+	d = next(e for e in O.engines if type(e).__name__ == 'McaLaw')
 	assert 0 < O.dt <= 0.4 * O.engines[0].limit * (1 + 1e-12)
 	assert 0.3 < O.dt / d.criticalTimeStep < 0.45
-	assert len(ids) and O.engines[0].limitedBy.startswith('McaDensity')
+	assert len(ids) and O.engines[0].limitedBy.startswith('McaLaw')
 
 
 def test_aSuddenFallOfTheStableStepShortensTheStepInsteadOfEndingTheRun(plugin):
@@ -201,7 +201,7 @@ def test_aSuddenFallOfTheStableStepShortensTheStepInsteadOfEndingTheRun(plugin):
 		chosen = min(d.criticalTimeStep, 1.1 * before)
 		O.step()
 		shortened += 0 < O.dt < chosen * (1 - 1e-12)
-		assert O.dt <= d.dtLimit and stepper.limitedBy == 'McaDensity'
+		assert O.dt <= d.dtLimit and stepper.limitedBy == 'McaLaw'
 		before = O.dt
 	assert d.brokenLinks > 10 and shortened > 0
 

@@ -40,13 +40,13 @@ def engine(name):
 
 @pytest.mark.parametrize('run', [0, 5])
 @pytest.mark.parametrize('name, value', [('volumeFilter', NAN), ('volumeFilter', -1.), ('volumeFilter', 5.), ('linkFactor', NAN), ('linkFactor', 1.), ('linkFactor', 3.), ('volumeRule', 'nonsense')])
-def test_attributesOfMcaDensity(plugin, run, name, value):
+def test_attributesOfMcaLaw(plugin, run, name, value):
 	from yade import O
 	start(run)
 	d = scene.density()
 	good = getattr(d, name)
 	setattr(d, name, value)
-	refused('McaDensity', name, str(value) if isinstance(value, str) else '%g' % value)
+	refused('McaLaw', name, str(value) if isinstance(value, str) else '%g' % value)
 	setattr(d, name, good)
 	O.run(5, True)
 
@@ -163,15 +163,15 @@ def engines(change):
 
 @pytest.mark.parametrize('run', [0, 5])
 @pytest.mark.parametrize('change, words', [
-        (lambda e: e[:3] + [e[2]] + e[3:], ['McaDensity twice']),
-        (lambda e: e[:3] + [__import__('yade_mca').McaDensity()] + e[3:], ['McaDensity twice']),
+        (lambda e: e[:3] + [e[2]] + e[3:], ['McaLaw twice']),
+        (lambda e: e[:3] + [__import__('yade_mca').McaLaw()] + e[3:], ['McaLaw twice']),
         (lambda e: e[:5] + [e[4]] + e[5:], ['McaForces twice']),
         (lambda e: e + [__import__('yade').utils.NewtonIntegrator(damping=0)], ['2 NewtonIntegrators']),
         (lambda e: e[1:], ['ForceResetter']),
         (lambda e: e[1:5] + [e[0]] + e[5:], ['ForceResetter']),
         (lambda e: [e[0]] + e[2:], ['collider']),
         (lambda e: e[:3] + [e[4], e[3], e[5]], ['McaForces', 'misplaced']),
-        (lambda e: e + [__import__('yade_mca').McaEngine()], ['McaEngine and McaDensity']),
+        (lambda e: e + [__import__('yade_mca').McaEngine()], ['McaEngine and McaLaw']),
 ])
 def test_engines(plugin, run, change, words):
 	start(run)
@@ -179,12 +179,12 @@ def test_engines(plugin, run, change, words):
 	refused(*words)
 
 
-@pytest.mark.parametrize('name', ['InteractionLoop', 'McaForces', 'NewtonIntegrator', 'ForceResetter', 'InsertionSortCollider', 'McaDensity'])
+@pytest.mark.parametrize('name', ['InteractionLoop', 'McaForces', 'NewtonIntegrator', 'ForceResetter', 'InsertionSortCollider', 'McaLaw'])
 def test_deadEngines(plugin, name):
 	from yade import O
 	start(5)
 	engine(name).dead = True
-	refused('dead' if name != 'McaDensity' else 'McaDensity')
+	refused('dead' if name != 'McaLaw' else 'McaLaw')
 	engine(name).dead = False
 	O.run(5, True)
 

@@ -17,7 +17,7 @@ KINDS = {
         'McaEngine without bodies': "O.engines = [McaEngine(dtFactor=-1)]",
         'McaGridEngine': "O.engines = [grid(dtFactor=-1)]",
         'McaTimeStepper': "block(); O.engines = [McaTimeStepper(factor=-1), McaEngine()]",
-        'McaDensity': "block(); O.dt = 1e-9; O.engines = scenes.law2Engines(); [e for e in O.engines if type(e).__name__ == 'McaDensity'][0].volumeRule = 'best'",
+        'McaLaw': "block(); O.dt = 1e-9; O.engines = scenes.law2Engines(); [e for e in O.engines if type(e).__name__ == 'McaLaw'][0].volumeRule = 'best'",
         'McaForces': "block(); O.dt = 1e-9; O.engines = scenes.law2Engines(); O.bodies[0].state.vel = (float('nan'), 0, 0)",
         'McaGridCoupler': "block(); O.engines = [McaTimeStepper(), McaEngine(), grid(), McaGridCoupler(side='left', tolerance=-1)]",
         'McaEngine, coupled': "block(); O.engines = [McaTimeStepper(), McaEngine(dtFactor=-1), grid(), McaGridCoupler(side='left')]",

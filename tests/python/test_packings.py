@@ -182,7 +182,7 @@ def test_resetStatesLetsANewEngineGoOn(plugin, road):
 	O.bodies[int(ids[0])].state.blockedDOFs = 'xyzXYZ'
 	before = kept()
 	O.engines, O.dt = [McaEngine(adaptive=False)], 1e-9
-	with pytest.raises(RuntimeError, match='resetStates' if road == 'engine' else 'McaDensity has moved it'):
+	with pytest.raises(RuntimeError, match='resetStates' if road == 'engine' else 'McaLaw has moved it'):
 		O.run(1, True)
 	packings.resetStates(ids.tolist())
 	assert kept() == before

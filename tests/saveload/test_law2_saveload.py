@@ -55,3 +55,28 @@ def test_sameBitsOnTwoThreads(tmp_path):
 	for n in 1, 2:
 		process("build(); O.run(400, True); open('t%d', 'w').write(digest())" % n, tmp_path, threads=n)
 	assert (tmp_path / 't1').read_text() == (tmp_path / 't2').read_text()
+
+
+def test_theOldNameOfTheLawGoesOn(tmp_path):
+	"""McaDensity, as McaLaw was called, in scripts and in files written with that name: the same bits."""
+	process("""
+build(); O.run(50, True); O.save('new.xml'); O.run(50, True); open('whole', 'w').write(digest())
+text = open('new.xml').read()
+assert text.count('"yade::McaLaw"') == 1
+open('old.xml', 'w').write(text.replace('"yade::McaLaw"', '"yade::McaDensity"'))
+""", tmp_path)
+	process("""
+from yade.wrapper import McaDensity, McaLaw
+import yade_mca
+scene.density = lambda: next(e for e in O.engines if isinstance(e, McaLaw))
+O.load('old.xml'); assert type(scene.density()) is McaDensity
+O.save('again.yade'); O.load('again.yade'); O.run(50, True); open('parts', 'w').write(digest())
+""", tmp_path)
+	process("""
+from yade_mca import McaDensity
+scene.density = lambda: next(e for e in O.engines if type(e) is McaDensity)
+build(); O.engines = [McaDensity() if type(e).__name__ == 'McaLaw' else e for e in O.engines]
+O.run(100, True); open('script', 'w').write(digest())
+""", tmp_path)
+	whole = (tmp_path / 'whole').read_text()
+	assert whole == (tmp_path / 'parts').read_text() == (tmp_path / 'script').read_text()

@@ -15,7 +15,8 @@ std::vector<Automaton> asInput(const Solver& s, std::vector<int32_t> without = {
 		if (i < 0 || std::count(without.begin(), without.end(), id)) continue;
 		Automaton a;
 		a.x = S.x[i], a.y = S.y[i], a.vx = S.vx[i], a.vy = S.vy[i], a.omega = S.omega[i], a.angle = S.angle[i];
-		a.mass = S.mass[i], a.inertia = S.inertia[i], a.diameter = S.diameter[i], a.weight = S.weight[i], a.strength = S.strength[i], a.eqps = S.eqps[i];
+		a.mass = S.mass[i], a.inertia = S.inertia[i], a.diameter = S.diameter[i], a.weight = S.weight[i], a.strength = S.strength[i],
+		a.eqps     = S.eqps[i];
 		a.material = S.species[S.speciesOf(i)].material, a.id = id, a.group = S.group[i];
 		out.push_back(a);
 	}
@@ -113,7 +114,8 @@ TEST(AutomataChange, AddedAutomatonLinksInItsPlace)
 				EXPECT_EQ(b.links(), c.links());
 				for (Solver* s : { &b, &c }) { // the same kick to both
 					for (size_t i = 0; i < s->store.size(); i++)
-						s->store.vx[i] = 10 * std::sin(3e3 * s->store.y[i] + s->store.id[i]), s->store.vy[i] = 10 * std::cos(2e3 * s->store.x[i]);
+						s->store.vx[i] = 10 * std::sin(3e3 * s->store.y[i] + s->store.id[i]),
+						s->store.vy[i] = 10 * std::cos(2e3 * s->store.x[i]);
 					s->moved();
 					run(*s, 50, 0.2, 1e-9);
 				}

@@ -14,7 +14,8 @@ Eos copper()
 /// Integral of P d(-eps) by Gauss-Legendre of order 5 on many pieces.
 double work(const Eos& e, double eps)
 {
-	const double node[5] = { -0.9061798459386640, -0.5384693101056831, 0., 0.5384693101056831, 0.9061798459386640 }, weight[5] = { 0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665, 0.2369268850561891 };
+	const double node[5]     = { -0.9061798459386640, -0.5384693101056831, 0., 0.5384693101056831, 0.9061798459386640 },
+		     weight[5]   = { 0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665, 0.2369268850561891 };
 	std::vector<double> ends = { 0. };
 	if (eps < e.clampStrain()) ends.push_back(e.clampStrain()); // the tangent bends there
 	ends.push_back(eps);
@@ -127,7 +128,9 @@ TEST(AutomataYield, ReturnMappingAgreesWithABisection)
 					}
 					// consistency trial - 3G e = (Y0 + slope e)(1 + C ln max(rate, 1)), hardening linear over one step
 					const auto gap = [&](double e) {
-						const double f = kind == YieldKind::johnsonCook ? 1 + y.rateCoefficient * std::log(std::max(e / (dt * y.referenceRate), 1.)) : 1.;
+						const double f = kind == YieldKind::johnsonCook
+							? 1 + y.rateCoefficient * std::log(std::max(e / (dt * y.referenceRate), 1.))
+							: 1.;
 						return trial - threeG * e - (Y0 + slope * e) * f;
 					};
 					double lo = 0, hi = trial / threeG;
@@ -146,7 +149,8 @@ TEST(AutomataPair, LatticeIdentityAndVolumeRules)
 	for (double d : { 1e-6, 1e-3, 2. }) {
 		EXPECT_NEAR(Lattice::cell(d) / (6 * Lattice::width(d) * d / 4), 1., 1e-15); // Omega0 = N0 S0 d/(2 dim)
 		for (double q : { 0.7, 1., 1.2 }) { // equal stretch q of all pairs: J = q^dim
-			const double r2 = q * q * d * d, inverse = volumeTerm<VolumeRule::inversePower>(d, r2), mean = volumeTerm<VolumeRule::meanDistance>(d, r2);
+			const double r2 = q * q * d * d, inverse = volumeTerm<VolumeRule::inversePower>(d, r2),
+				     mean = volumeTerm<VolumeRule::meanDistance>(d, r2);
 			EXPECT_NEAR((volumeRatio<VolumeRule::inversePower>(inverse)), q * q, 1e-14);
 			EXPECT_NEAR((volumeRatio<VolumeRule::meanDistance>(mean)), q * q, 1e-14);
 		}

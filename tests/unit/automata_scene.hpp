@@ -23,7 +23,8 @@ inline Material steel(YieldKind kind = YieldKind::elastic)
 	if (kind != YieldKind::elastic) m.yield.yieldStress = 0.792e9;
 	if (kind == YieldKind::linearHardening) m.yield.hardeningModulus = 0.5e9;
 	if (kind == YieldKind::johnsonCook) {
-		m.yield.hardeningModulus = 0.51e9, m.yield.hardeningExponent = 0.26, m.yield.rateCoefficient = 0.014, m.yield.thermalSoftening = 1.03, m.yield.meltTemperature = 1793., m.yield.heatPerWork = 0.9 / (7830. * 477.);
+		m.yield.hardeningModulus = 0.51e9, m.yield.hardeningExponent = 0.26, m.yield.rateCoefficient = 0.014, m.yield.thermalSoftening = 1.03,
+		m.yield.meltTemperature = 1793., m.yield.heatPerWork = 0.9 / (7830. * 477.);
 	}
 	m.friction = 0.1;
 	return m;

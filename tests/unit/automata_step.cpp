@@ -142,7 +142,8 @@ TEST(AutomataStep, ActionIsReactionAndMomentaAreConserved)
 				for (size_t i = 0; i < S.size(); i++) {
 					if (S.id[i] < 0) continue;
 					fx += S.fx[i], fy += S.fy[i], F += std::hypot(S.fx[i], S.fy[i]);
-					T += S.x[i] * S.fy[i] - S.y[i] * S.fx[i] + S.torque[i], M += std::fabs(S.x[i] * S.fy[i]) + std::fabs(S.y[i] * S.fx[i]) + std::fabs(S.torque[i]);
+					T += S.x[i] * S.fy[i] - S.y[i] * S.fx[i] + S.torque[i],
+						M += std::fabs(S.x[i] * S.fy[i]) + std::fabs(S.y[i] * S.fx[i]) + std::fabs(S.torque[i]);
 				}
 				if (F > 0) force = std::max(force, std::hypot(fx, fy) / F), turn = std::max(turn, std::fabs(T) / M);
 				s.integrate(dt);
@@ -311,9 +312,9 @@ TEST(AutomataStep, UnlinkedPairHasNoTensionAndFrictionIsBounded)
 		const Contacts& C = s.contacts;
 		for (size_t c = 0; c < C.size(); c++) {
 			const double dx = S.x[C.other[c]] - S.x[C.owner[c]], dy = S.y[C.other[c]] - S.y[C.owner[c]], r = std::hypot(dx, dy);
-			const double normal = (C.a[c] * dx + C.b[c] * dy) / r, shear = (-C.a[c] * dy + C.b[c] * dx) / r; // force on the owner
+			const double normal = (C.first[c] * dx + C.second[c] * dy) / r, shear = (-C.first[c] * dy + C.second[c] * dx) / r; // force on the owner
 			const double along = (dx * (S.vx[C.other[c]] - S.vx[C.owner[c]]) + dy * (S.vy[C.other[c]] - S.vy[C.owner[c]])) / r;
-			if (r >= std::max(C.rest[c], C.rest[C.reverse[c]])) { EXPECT_EQ(std::fabs(C.a[c]) + std::fabs(C.b[c]), 0.); }
+			if (r >= std::max(C.rest[c], C.rest[C.reverse[c]])) { EXPECT_EQ(std::fabs(C.first[c]) + std::fabs(C.second[c]), 0.); }
 			EXPECT_LE(normal, 1e-9 * (1 + std::fabs(normal)));
 			if (along >= 0) { EXPECT_LE(std::fabs(shear), C.friction[c] * -normal * (1 + 1e-9) + 1e-6); } // without viscous push
 		}

@@ -29,14 +29,14 @@ Field deform(const std::array<double, 4>& H, double angle, const Material& m, Vo
 	const double dt = 1e-3 * s.criticalStep();
 	if (J0 != 1) { // first a pure compression to J0
 		for (size_t i = 0; i < S.size(); i++) S.vx[i] = (std::sqrt(J0) - 1) * S.x[i] / dt, S.vy[i] = (std::sqrt(J0) - 1) * S.y[i] / dt;
-		for (size_t i = 0; i < S.size(); i++) S.ax[i] = S.ay[i] = S.ar[i] = 0;
+		for (size_t i = 0; i < S.size(); i++) S.perMassX[i] = S.perMassY[i] = S.perInertia[i] = 0;
 		s.integrate(dt);
 		s.computeForces();
 	}
 	for (size_t i = 0; i < S.size(); i++) {
 		S.vx[i] = (H[0] * S.x[i] + H[1] * S.y[i]) / dt, S.vy[i] = (H[2] * S.x[i] + H[3] * S.y[i]) / dt;
 		S.omega[i] = spin * 0.5 * (H[2] - H[1]) / dt;
-		S.ax[i] = S.ay[i] = S.ar[i] = 0;
+		S.perMassX[i] = S.perMassY[i] = S.perInertia[i] = 0;
 	}
 	s.integrate(dt);
 	s.computeForces();
@@ -48,7 +48,8 @@ Field deform(const std::array<double, 4>& H, double angle, const Material& m, Vo
 		for (int i = 0; i < nx; i++) {
 			const size_t q = size_t(s.indexOf(j * nx + i));
 			if (j >= ny / 2) fx += S.fx[q], fy += S.fy[q]; // force of the lower half on the upper
-			if (i > 3 && i < nx - 4 && j > 3 && j < ny - 4) f.worst = std::max(f.worst, std::hypot(S.fx[q], S.fy[q]) / (d * (std::fabs(f.P) + f.Mises)));
+			if (i > 3 && i < nx - 4 && j > 3 && j < ny - 4)
+				f.worst = std::max(f.worst, std::hypot(S.fx[q], S.fy[q]) / (d * (std::fabs(f.P) + f.Mises)));
 		}
 	f.sxx = fx, f.sxy = fy;
 	return f;
@@ -76,7 +77,9 @@ template <class F> double limit(F&& even)
 std::array<double, 4> scaled(const std::array<double, 4>& H, double h) { return { h * H[0], h * H[1], h * H[2], h * H[3] }; }
 
 const double                angles[] = { 0., 0.2, M_PI / 6, 0.5 * M_PI, 2.3 };
-const std::array<double, 4> modes[]  = { { 1, 0, 0, 1 }, { 1, 0, 0, -1 }, { 0, 1, 1, 0 }, { 1, 0, 0, 0 }, { 0, 0, 0, 1 }, { 0, 1, 0, 0 }, { 0.4, -0.7, 0.2, 0.9 } };
+const std::array<double, 4> modes[]  = {
+	 { 1, 0, 0, 1 }, { 1, 0, 0, -1 }, { 0, 1, 1, 0 }, { 1, 0, 0, 0 }, { 0, 0, 0, 1 }, { 0, 1, 0, 0 }, { 0.4, -0.7, 0.2, 0.9 }
+};
 }
 
 // The three volume rules are the same medium in small deformations: exactly (K, G), isotropic.
@@ -87,7 +90,8 @@ TEST(AutomataUniform, HookeIsExactInEveryOrientation)
 	for (VolumeRule rule : { VolumeRule::affine, VolumeRule::inversePower, VolumeRule::meanDistance })
 		for (double angle : angles)
 			for (auto& H : modes) {
-				const double exx = H[0], eyy = H[3], exy = 0.5 * (H[1] + H[2]), tr = exx + eyy, dxx = exx - tr / 3, dyy = eyy - tr / 3, dzz = -tr / 3;
+				const double exx = H[0], eyy = H[3], exy = 0.5 * (H[1] + H[2]), tr = exx + eyy, dxx = exx - tr / 3, dyy = eyy - tr / 3,
+					     dzz   = -tr / 3;
 				const double mises = 2 * G * std::sqrt(1.5 * (dxx * dxx + dyy * dyy + dzz * dzz + 2 * exy * exy)), scale = K + 2 * G;
 				Material     lin = m;
 				lin.eos.hugoniotSlope = 0; // in compression and tension the same, so that the expression is even
@@ -98,8 +102,13 @@ TEST(AutomataUniform, HookeIsExactInEveryOrientation)
 				EXPECT_NEAR(limit([&](double h) { return (at(h).Mises + at(-h).Mises) / (2 * h); }), mises, 2e-12 * scale) << angle;
 				if (rule != VolumeRule::affine && angle > 0) continue;
 				// traction on the upper half across a row with unit normal n: the force of what lies below is -sigma n
-				const double nx = -std::sin(angle), ny = std::cos(angle), sxx = K * tr + 2 * G * dxx, syy = K * tr + 2 * G * dyy, sxy = 2 * G * exy;
-				const auto   pull = [&](int k) { return limit([&](double h) { return (traction(scaled(H, h), angle, lin, rule)[k] - traction(scaled(H, -h), angle, lin, rule)[k]) / (2 * h); }); };
+				const double nx = -std::sin(angle), ny = std::cos(angle), sxx = K * tr + 2 * G * dxx, syy = K * tr + 2 * G * dyy,
+					     sxy = 2 * G * exy;
+				const auto pull  = [&](int k) {
+                                        return limit([&](double h) {
+                                                return (traction(scaled(H, h), angle, lin, rule)[k] - traction(scaled(H, -h), angle, lin, rule)[k]) / (2 * h);
+                                        });
+				};
 				EXPECT_NEAR(pull(0), -(sxx * nx + sxy * ny), 3e-12 * scale) << angle;
 				EXPECT_NEAR(pull(1), -(sxy * nx + syy * ny), 3e-12 * scale) << angle;
 			}
@@ -119,7 +128,8 @@ TEST(AutomataUniform, AffineRuleIsExactAtFiniteStrain)
 {
 	const Material m = steel();
 	for (double angle : angles)
-		for (auto H : { std::array<double, 4> { -0.1, 0.05, 0.02, -0.05 }, std::array<double, 4> { 0.03, 0.3, 0., 0.02 }, std::array<double, 4> { -0.2, 0., 0., 0. } }) {
+		for (auto H : { std::array<double, 4> { -0.1, 0.05, 0.02, -0.05 }, std::array<double, 4> { 0.03, 0.3, 0., 0.02 },
+		                std::array<double, 4> { -0.2, 0., 0., 0. } }) {
 			const double J = (1 + H[0]) * (1 + H[3]) - H[1] * H[2];
 			EXPECT_NEAR(deform(H, angle, m, VolumeRule::affine, 16, 1).P / pressure(m.eos, J - 1), 1., 1e-12);
 		}
@@ -183,7 +193,7 @@ TEST(AutomataUniform, RigidRotationLeavesStressUnchanged)
 	s.computeForces();
 	const double dt = 1e-3 * s.criticalStep();
 	for (size_t i = 0; i < S.size(); i++) {
-		S.ax[i] = S.ay[i] = S.ar[i] = 0;
+		S.perMassX[i] = S.perMassY[i] = S.perInertia[i] = 0;
 		S.vx[i] = (0.003 * S.x[i] + 0.004 * S.y[i]) / dt, S.vy[i] = (0.002 * S.x[i] - 0.001 * S.y[i]) / dt, S.omega[i] = 0.;
 	}
 	s.integrate(dt);
@@ -204,7 +214,8 @@ TEST(AutomataUniform, RigidRotationLeavesStressUnchanged)
 		s.integrate(dt);
 		s.computeForces();
 		const double f = std::hypot(S.fx[s.indexOf(0)], S.fy[s.indexOf(0)]);
-		worst = std::max({ worst, std::fabs(S.P[c] / P - 1), std::fabs(s.equivalentStress(c) / q - 1), std::fabs(S.szz[c] / szz - 1), std::fabs(f / f0 - 1) });
+		for (double error : { S.P[c] / P, s.equivalentStress(c) / q, S.szz[c] / szz, f / f0 })
+			worst = std::max(worst, std::fabs(error - 1));
 	}
 	EXPECT_LT(worst, 1e-9);
 }

@@ -117,6 +117,8 @@ TEST(GridCell, InvertedCellShowsInTheRate)
 	CellConstants c;
 	c.eos = steel().eos, c.G = 80e9, c.dt = 1e-8;
 	CellState    s = { 0, 0, 0, 0, 0, 0, 0 };
-	const double r = updateCell<YieldKind::elastic, GridViscosity::none, false, EosKind::shockAdiabat>(c, cellPattern(0, 0, 0, 1, 1, 1, 1, 0), { 0, 0, 0, 0, 0, 0 }, 1., 0., s).rate;
+	const double r = updateCell<YieldKind::elastic, GridViscosity::none, false, EosKind::shockAdiabat>(
+				 c, cellPattern(0, 0, 0, 1, 1, 1, 1, 0), { 0, 0, 0, 0, 0, 0 }, 1., 0., s)
+				 .rate;
 	EXPECT_FALSE(std::isfinite(r));
 }

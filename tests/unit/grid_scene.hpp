@@ -20,7 +20,8 @@ inline Material steel(YieldKind kind = YieldKind::elastic)
 	if (kind != YieldKind::elastic) m.yield.yieldStress = 0.792e9;
 	if (kind == YieldKind::linearHardening) m.yield.hardeningModulus = 0.5e9;
 	if (kind == YieldKind::johnsonCook) {
-		m.yield.hardeningModulus = 0.51e9, m.yield.hardeningExponent = 0.26, m.yield.rateCoefficient = 0.014, m.yield.thermalSoftening = 1.03, m.yield.meltTemperature = 1793., m.yield.heatPerWork = 0.9 / (7830. * 477.);
+		m.yield.hardeningModulus = 0.51e9, m.yield.hardeningExponent = 0.26, m.yield.rateCoefficient = 0.014, m.yield.thermalSoftening = 1.03,
+		m.yield.meltTemperature = 1793., m.yield.heatPerWork = 0.9 / (7830. * 477.);
 	}
 	return m;
 }
@@ -33,7 +34,8 @@ inline std::vector<double> line(double a, double b, int n)
 }
 
 /// Rectangle [0,lx] x [0,ly] whose nodes are moved at random by up to `skew` of a cell; outline nodes stay when keepOutline.
-inline int addSkew(Grid& g, const Material& m, int ni, int nj, double lx, double ly, double skew, unsigned seed, const BlockOptions& o = {}, bool keepOutline = false)
+inline int
+addSkew(Grid& g, const Material& m, int ni, int nj, double lx, double ly, double skew, unsigned seed, const BlockOptions& o = {}, bool keepOutline = false)
 {
 	std::mt19937                           r(seed);
 	std::uniform_real_distribution<double> u(-skew, skew);

@@ -130,7 +130,9 @@ TEST(GridStep, OneBlockAndFourJoinedBlocksMoveAlike)
 	four.addRectangle(m, line(0.02, 0.04, 20), line(0, 0.01, 10));
 	four.addRectangle(m, line(0, 0.02, 20), line(0.01, 0.02, 10));
 	four.addRectangle(m, line(0.02, 0.04, 20), line(0.01, 0.02, 10));
-	const auto v = [](double x, double y) { return std::array<double, 2> { 100 * std::sin(200 * x) * std::cos(100 * y), 80 * std::cos(150 * x + 90 * y) }; };
+	const auto v = [](double x, double y) {
+		return std::array<double, 2> { 100 * std::sin(200 * x) * std::cos(100 * y), 80 * std::cos(150 * x + 90 * y) };
+	};
 	one.setVelocity(0, v);
 	for (int b = 0; b < 4; b++) four.setVelocity(b, v);
 	double t = 0;
@@ -155,7 +157,9 @@ TEST(GridStep, OpenInteriorNodeMovesAsAClosedOne)
 	b.openInteriorNode(0, 8, 11);
 	b.openInteriorNode(0, 3, 20); // on a seam between bands
 	for (Grid* g : { &a, &b }) {
-		g->setVelocity(0, [](double x, double y) { return std::array<double, 2> { 100 * std::sin(200 * x) * std::cos(100 * y), 80 * std::cos(150 * x + 90 * y) }; });
+		g->setVelocity(0, [](double x, double y) {
+			return std::array<double, 2> { 100 * std::sin(200 * x) * std::cos(100 * y), 80 * std::cos(150 * x + 90 * y) };
+		});
 		for (int k = 0; k < 50; k++) g->step(3e-8);
 	}
 	double worst = 0;

@@ -17,7 +17,8 @@ Material steel()
 }
 const Material material = steel();
 
-/// n automata of diameter 1 along the line from the origin at `angle`, the first `begin` from the first node; `nodes` edges of length h; the block lies to the right.
+/// n automata of diameter 1 along the line from the origin at `angle`, the first `begin` from the first node; `nodes` edges of length h; the block lies to the
+/// right.
 struct Scene {
 	std::vector<RowPoint> row;
 	SideNodes             side;

@@ -48,7 +48,8 @@ struct ContactWork {
 	double friction = 0, coupling = 0, plastic = 0;
 };
 /// This side's half, area S0 d/2; stress/(2G) = elastic strain. Taken out at the mean of the stresses before and after the step, as the forces do their
-/// work; a pair that parts loses what it still held. after = afterFriction(c); own, other: dilation() of both; perTwoG = 1/(2G of the pair), perOwnG = 1/(G of the owner), 0 where that is zero.
+/// work; a pair that parts loses what it still held. after = afterFriction(c); own, other: dilation() of both; perTwoG = 1/(2G of the pair), perOwnG = 1/(G of
+/// the owner), 0 where that is zero.
 MCA_INLINE ContactWork contactWork(const ContactSide& c, Pair<double> after, double perTwoG, double perOwnG, double own, double other)
 {
 	const double area = 0.5 * Lattice::width(c.d) * c.d, perJ = area / c.J, perG = 0.5 * perJ * perTwoG, perOwn = 0.25 * perJ * perOwnG;

@@ -67,7 +67,10 @@ MCA_INLINE double equivalentStressAfter(double scale, double meanSquare, double 
 /// Plastic work per mass of a step [J/kg]: goes into the internal energy.
 MCA_INLINE double plasticHeat(double J, double trial, const Return& r, double perRho) { return J * r.scale * trial * r.dEqps * perRho; }
 /// (11), temperature after the step [K].
-MCA_INLINE double warmed(const Yield& y, double temperature, double trial, const Return& r) { return fma(y.heatPerWork * r.scale * trial, r.dEqps, temperature); }
+MCA_INLINE double warmed(const Yield& y, double temperature, double trial, const Return& r)
+{
+	return fma(y.heatPerWork * r.scale * trial, r.dEqps, temperature);
+}
 
 /// Work of a step, booked for the energy account [J/m].
 struct PairWork {
@@ -75,7 +78,9 @@ struct PairWork {
 	double coupling; ///< pair work that goes into volume change rather than into the stored deviatoric energy J sigma_eq^2/(6G); zero in a uniform field
 };
 /// sums: of links (and of contacts in `both` and `square`); szz before, trial and after; sixth = cell of the full packing / neighbours; invN = 1/slots.
-MCA_INLINE PairWork pairWork(const PairSums<double>& sums, double trial, const Return& r, double J, double dilation, double szzBefore, double szzTrial, double szz, double threeG, double sixth, double invN)
+MCA_INLINE PairWork pairWork(
+	const PairSums<double>& sums, double trial, const Return& r, double J, double dilation, double szzBefore, double szzTrial, double szz, double threeG,
+	double sixth, double invN)
 {
 	const double before = equivalentStress(sums.squareBefore * invN, szzBefore);
 	// the stress before the step along the direction of flow: the two need not be parallel

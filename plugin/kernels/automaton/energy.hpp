@@ -9,7 +9,8 @@ namespace mca {
 inline double coldEnergy(const Material& m, double cell, double J) { return cell * storedEnergy(m.eos, J - 1.); }
 /// Of the volume; e = internal energy per mass [J/kg], where the equation of state has one.
 inline double volumeEnergy(const Material& m, double cell, double J, double e) { return m.eos.heats() ? cell * m.eos.rho0 * e : coldEnergy(m, cell, J); }
-/// Of one side of a pair, over the volume that it stands for [J/m3]: with the stiffness of the pair, which between unlike materials is neither's own. s, tau: J times the stresses.
+/// Of one side of a pair, over the volume that it stands for [J/m3]: with the stiffness of the pair, which between unlike materials is neither's own. s, tau: J
+/// times the stresses.
 inline double pairEnergy(double s, double tau, double J, double twoG) { return twoG > 0 ? (sqr(s) + sqr(tau)) / (J * twoG) : 0.; }
 /// Of the deviator: pairs = sum of pairEnergy() with the weights of the links. A side stands for one share of the full cell; szz for the volume of all,
 /// which on weighted rims is not the cell.

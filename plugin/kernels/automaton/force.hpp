@@ -30,7 +30,8 @@ MCA_INLINE PairViscosity viscosityOf(const Material& a, const Material& b)
 /// Pairs of these materials have the same constants.
 inline bool samePairs(const Material& a, const Material& b)
 {
-	return a.G == b.G && a.friction == b.friction && a.eos.rho0 == b.eos.rho0 && a.eos.c0 == b.eos.c0 && a.viscosity.linear == b.viscosity.linear && a.viscosity.quadratic == b.viscosity.quadratic;
+	return a.G == b.G && a.friction == b.friction && a.eos.rho0 == b.eos.rho0 && a.eos.c0 == b.eos.c0 && a.viscosity.linear == b.viscosity.linear
+		&& a.viscosity.quadratic == b.viscosity.quadratic;
 }
 
 /// Force of a link: stress = sum over both sides times the area, over r [N/m over m]; push: of the pressures.

@@ -46,7 +46,8 @@ struct Settling {
 	double need;  ///< volume term that each near contact must have [-]
 	/// J: volume to take over; Jc: that of the contacts; near: contacts about as near as in the packing.
 	Settling(VolumeRule rule, double J, double Jc, int near, double invN)
-	        : holds(near >= 3 && J < Jc), need((rule == VolumeRule::meanDistance ? meanTerm<VolumeRule::meanDistance>(J) : meanTerm<VolumeRule::inversePower>(J)) / (near * invN))
+		: holds(near >= 3 && J < Jc)
+		, need((rule == VolumeRule::meanDistance ? meanTerm<VolumeRule::meanDistance>(J) : meanTerm<VolumeRule::inversePower>(J)) / (near * invN))
 	{
 	}
 	/// Only neighbours about as near as in the packing can take over: a far one would push across a gap.

@@ -21,7 +21,8 @@ struct Range {
 	constexpr Range with(const char* text) const { return { least, most, withLeast, withMost, infinite, words, text }; }
 	constexpr bool  holds(double v) const
 	{
-		return (infinite && v == std::numeric_limits<double>::infinity()) || ((withLeast ? v >= least : v > least) && (withMost ? v <= most : v < most));
+		return (infinite && v == std::numeric_limits<double>::infinity())
+			|| ((withLeast ? v >= least : v > least) && (withMost ? v <= most : v < most));
 	}
 };
 
@@ -45,7 +46,8 @@ struct Thermal {
 	double B; ///< [-]
 };
 
-/// Traits and functions of an equation of state; eps = J - 1 is the volume strain. A law offers clampStrain, pressure, tangent and storedEnergy, and thermal when it heats.
+/// Traits and functions of an equation of state; eps = J - 1 is the volume strain. A law offers clampStrain, pressure, tangent and storedEnergy, and thermal
+/// when it heats.
 struct EosLaw {
 	/// the pressure depends on the internal energy, which solvers then keep; contacts push by pressure(eps) all the same
 	static constexpr bool heats = false;

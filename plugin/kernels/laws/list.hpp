@@ -118,11 +118,5 @@ template <class Y, class F> void eachFlowConstant(Y& e, F&& f) { MCA_FLOW_LAWS(M
 /// Names of all laws and constants in their order, as one number: saved states are of the same layout where it is the same.
 #define MCA_NAME(name, unit, start, range, text) #name " "
 #define MCA_NAMES(name, law, text) #name ": " MCA_CONSTANTS_##name(MCA_NAME)
-constexpr uint64_t lawsVersion(const char* text = MCA_EOS_LAWS(MCA_NAMES) MCA_FLOW_LAWS(MCA_NAMES))
-{
-	uint64_t h = 1469598103934665603ULL; // FNV-1a
-	for (; *text; text++)
-		h = (h ^ uint8_t(*text)) * 1099511628211ULL;
-	return h;
-}
+constexpr uint64_t lawsVersion() { return nameHash(MCA_EOS_LAWS(MCA_NAMES) MCA_FLOW_LAWS(MCA_NAMES)); }
 }

@@ -12,7 +12,8 @@ namespace yade {
 namespace sdk __attribute__((visibility("hidden"))) {
 	Probe::Probe()
 	{
-		if (pipe2(pipe, O_CLOEXEC | O_NONBLOCK) != 0) throw std::runtime_error("the guard cannot open a pipe: raise the limit of open files (ulimit -n)");
+		if (pipe2(pipe, O_CLOEXEC | O_NONBLOCK) != 0)
+			throw std::runtime_error("the guard cannot open a pipe: raise the limit of open files (ulimit -n)");
 		wrapper = py::import("yade.wrapper");
 	}
 	Probe::~Probe()

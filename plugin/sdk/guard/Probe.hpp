@@ -40,7 +40,10 @@ namespace sdk __attribute__((visibility("hidden"))) {
 			const auto* object = static_cast<const C*>(make(cls, name, py::object(value), py::type_id<C>()));
 			check(object && equalMember(&(object->*place), expected), string(cls) + "." + name + " is not where the declarations have it");
 		}
-		template <class C, class M> void member(const char* cls, const char* name, M C::*place, const M& value) { member(cls, name, place, value, value); }
+		template <class C, class M> void member(const char* cls, const char* name, M C::*place, const M& value)
+		{
+			member(cls, name, place, value, value);
+		}
 
 	private:
 		const void* make(const char* cls, const char* attribute, const py::object& value, const py::type_info& type);

@@ -27,10 +27,11 @@ namespace sdk __attribute__((visibility("hidden"))) {
 		}
 		if (probe.failed())
 			throw std::runtime_error(
-			        "yade_mca does not fit the YADE in this process (" + std::to_string(probe.failed()) + " of " + std::to_string(probe.made())
-			        + " checks failed):\n" + probe.report()
-			        + "What to do: install the YADE it is made for (the package yade " MCA_YADE_VERSION "), build the plugin anew with the YADE that is here "
-			          "(pyscripts/setup), or build it inside your YADE's source tree (patches/README.md).");
+				"yade_mca does not fit the YADE in this process (" + std::to_string(probe.failed()) + " of " + std::to_string(probe.made())
+				+ " checks failed):\n" + probe.report()
+				+ "What to do: install the YADE it is made for (the package yade " MCA_YADE_VERSION
+				  "), build the plugin anew with the YADE that is here "
+				  "(pyscripts/setup), or build it inside your YADE's source tree (patches/README.md).");
 		return probe.made();
 	}
 } // namespace sdk

@@ -5,6 +5,7 @@
 
 namespace yade {
 namespace sdk __attribute__((visibility("hidden"))) {
+	/// Long because it is a list.
 	void checkMembers(Probe& probe)
 	{
 		const Vector3r v(1.5, -2.5, 3.5);

@@ -15,12 +15,18 @@ namespace sdk __attribute__((visibility("hidden"))) {
 			body.attr("mat")   = material;
 			const Body&     b  = py::extract<const Body&>(body)();
 			probe.check(b.shape.get() == static_cast<Shape*>(py::extract<Sphere*>(shape)()), "Body.shape is not where the declarations have it");
-			probe.check(b.material.get() == static_cast<Material*>(py::extract<FrictMat*>(material)()), "Body.material is not where the declarations have it");
+			probe.check(
+				b.material.get() == static_cast<Material*>(py::extract<FrictMat*>(material)()),
+				"Body.material is not where the declarations have it");
 			probe.check(probe.isObject(b.state.get(), "State"), "Body.state is not where the declarations have it");
-			probe.check(!b.bound && b.intrs.empty() && b.clumpId == Body::ID_NONE, "Body.bound, intrs or clumpId is not where the declarations have it");
+			probe.check(
+				!b.bound && b.intrs.empty() && b.clumpId == Body::ID_NONE,
+				"Body.bound, intrs or clumpId is not where the declarations have it");
 			if (!probe.failed()) {
 				const State& s = *b.state;
-				probe.check(&s.pos == &s.se3.position && &s.ori == &s.se3.orientation, "State.pos and ori are not where the declarations have them");
+				probe.check(
+					&s.pos == &s.se3.position && &s.ori == &s.se3.orientation,
+					"State.pos and ori are not where the declarations have them");
 			}
 		}
 		void checkTiming(Probe& probe)
@@ -39,7 +45,8 @@ namespace sdk __attribute__((visibility("hidden"))) {
 			e.timingDeltas->data[0].nExec = 22;
 			const py::list data(engine.attr("timingDeltas").attr("data"));
 			probe.check(
-			        py::len(data) == 1 && data[0] == py::make_tuple("guard", 21, 22), "TimingDeltas is laid out otherwise than the declarations have it");
+				py::len(data) == 1 && data[0] == py::make_tuple("guard", 21, 22),
+				"TimingDeltas is laid out otherwise than the declarations have it");
 			e.timingDeltas.reset();
 		}
 		void checkEnergy(Probe& probe)
@@ -54,7 +61,8 @@ namespace sdk __attribute__((visibility("hidden"))) {
 			        "EnergyTracker.energies is not where the declarations have it");
 			probe.check(t.names.size() == 1 && t.resetStep.size() == 1, "EnergyTracker.names or resetStep is not where the declarations have it");
 			const Real expected = 2.5;
-			if (!probe.failed()) probe.check(probe.equal(a.chunks[0], &expected, sizeof expected), "EnergyTracker keeps values otherwise than declared");
+			if (!probe.failed())
+				probe.check(probe.equal(a.chunks[0], &expected, sizeof expected), "EnergyTracker keeps values otherwise than declared");
 		}
 	}
 
@@ -65,7 +73,8 @@ namespace sdk __attribute__((visibility("hidden"))) {
 		checkEnergy(probe);
 		const py::object O = py::import("yade").attr("O");
 		Scene&           s = *Omega::instance().getScene();
-		probe.check(s.dt == py::extract<Real>(O.attr("dt")) && s.iter == py::extract<long>(O.attr("iter")), "Scene.dt or iter differs from O.dt, O.iter");
+		probe.check(
+			s.dt == py::extract<Real>(O.attr("dt")) && s.iter == py::extract<long>(O.attr("iter")), "Scene.dt or iter differs from O.dt, O.iter");
 		const auto count = [&](const char* name) { return size_t(py::len(O.attr(name))); };
 		probe.check(s.engines.size() == count("engines"), "Scene.engines is not where the declarations have it");
 		probe.check(s.materials.size() == count("materials"), "Scene.materials is not where the declarations have it");
@@ -89,7 +98,9 @@ namespace sdk __attribute__((visibility("hidden"))) {
 		probe.check(s.interactions->serializeSorted == !sorted, "InteractionContainer.serializeSorted is not where the declarations have it");
 		interactions.attr("serializeSorted") = sorted;
 		probe.check(s.forces.getNumAllocatedThreads() == omp_get_max_threads(), "Scene.forces is not where the declarations have it");
-		probe.check(s.forces.syncCount == py::extract<unsigned long>(O.attr("forces").attr("syncCount")), "ForceContainer.syncCount is not where the declarations have it");
+		probe.check(
+			s.forces.syncCount == py::extract<unsigned long>(O.attr("forces").attr("syncCount")),
+			"ForceContainer.syncCount is not where the declarations have it");
 	}
 } // namespace sdk
 } // namespace yade

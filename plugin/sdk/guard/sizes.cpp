@@ -10,7 +10,8 @@ namespace sdk __attribute__((visibility("hidden"))) {
 #define SIZE(cls) probe.size(#cls, sizeof(cls));
 		SIZE(Engine) SIZE(GlobalEngine) SIZE(PartialEngine) SIZE(PeriodicEngine) SIZE(TimeStepper) SIZE(BoundaryController)
 		SIZE(State) SIZE(Shape) SIZE(Sphere) SIZE(Bound) SIZE(Aabb) SIZE(Material) SIZE(ElastMat) SIZE(FrictMat) SIZE(Body)
-		SIZE(IGeom) SIZE(GenericSpheresContact) SIZE(ScGeom) SIZE(ScGeom6D) SIZE(IPhys) SIZE(NormPhys) SIZE(NormShearPhys) SIZE(FrictPhys) SIZE(Interaction)
+		SIZE(IGeom) SIZE(GenericSpheresContact) SIZE(ScGeom) SIZE(ScGeom6D) SIZE(IPhys) SIZE(NormPhys) SIZE(NormShearPhys)
+		SIZE(FrictPhys) SIZE(Interaction)
 		SIZE(BodyContainer) SIZE(InteractionContainer) SIZE(EnergyTracker) SIZE(Scene)
 		SIZE(Functor) SIZE(BoundFunctor) SIZE(IGeomFunctor) SIZE(IPhysFunctor) SIZE(LawFunctor) SIZE(GlShapeFunctor)
 #undef SIZE

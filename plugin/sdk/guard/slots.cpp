@@ -13,7 +13,8 @@ namespace sdk __attribute__((visibility("hidden"))) {
 		};
 		string mangled(const string& cls, const string& function, const char* arguments, bool isConst)
 		{
-			return string("_ZN") + (isConst ? "K" : "") + "4yade" + std::to_string(cls.size()) + cls + std::to_string(function.size()) + function + arguments;
+			return string("_ZN") + (isConst ? "K" : "") + "4yade" + std::to_string(cls.size()) + cls + std::to_string(function.size()) + function
+				+ arguments;
 		}
 	}
 	void checkSlots(Probe& probe)

@@ -20,7 +20,8 @@ namespace sdk __attribute__((visibility("hidden"))) {
 			size_t found = 0, place = 0;
 			for (size_t at = 0; at + sizeof(T) <= n; at += sizeof(T))
 				if (!std::memcmp(&first[at], &a, sizeof(T)) && !std::memcmp(begin + at, &b, sizeof(T))) place = at, found++;
-			if (found != 1) throw std::runtime_error(string("NewtonIntegrator.") + attribute + " was not found in this version of YADE; please report it.");
+			if (found != 1)
+				throw std::runtime_error(string("NewtonIntegrator.") + attribute + " was not found in this version of YADE; please report it.");
 			return place;
 		}
 		struct Places {

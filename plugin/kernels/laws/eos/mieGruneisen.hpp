@@ -4,7 +4,8 @@
 #pragma once
 #include "shockAdiabat.hpp"
 
-#define MCA_CONSTANTS_mieGruneisen(C) C(gruneisen, "-", 0, laws::notNegative, "Grueneisen parameter at rest, for equations of state that depend on the internal energy")
+#define MCA_CONSTANTS_mieGruneisen(C) \
+	C(gruneisen, "-", 0, laws::notNegative, "Grueneisen parameter at rest, for equations of state that depend on the internal energy")
 #define MCA_USES_mieGruneisen(U) MCA_USES_shockAdiabat(U) U(gruneisen, laws::notNegative)
 
 namespace mca::eos {

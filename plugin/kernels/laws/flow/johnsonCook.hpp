@@ -43,13 +43,14 @@ struct JohnsonCook : FlowLaw {
 		return staticYield(y, eqps, temperature).stress * (1. + y.rateCoefficient * std::log(max(rate / y.referenceRate, 1.)));
 	}
 
-	/// Plastic strain d of the step above the static yield stress s: trial - 3G d = Y(eps_p + d, d/dt) by two Newton steps from a close start; the residual is
-	/// below 1e-6 Y.
+	/// Plastic strain d of the step above the static yield stress s: trial - 3G d = Y(eps_p + d, d/dt) by two Newton steps from a close start; the residual
+	/// is below 1e-6 Y.
 	template <class Y> static MCA_INLINE double increment(const Y& y, const StaticYield& s, double trial, double threeG, double dt, double, double)
 	{
 		const double perRate = 1. / (dt * y.referenceRate), C = y.rateCoefficient;
 		// Start: rate term and elastic unloading alone, 3G d + Y C ln(d/(dt rate0)) = trial - Y, is w + ln w = l with w = 3G d/(Y C): Lambert's W of
-		// exp l, here within 1 % (Winitzki 2003). From the rate-free answer Newton's steps would leave the range where l is small: low rates, short steps.
+		// exp l, here within 1 % (Winitzki 2003). From the rate-free answer Newton's steps would leave the range where l is small: low rates, short
+		// steps.
 		const double k = threeG + s.slope, YC = max(C * s.stress, 1e-12 * threeG);
 		const double l = fastLog(k / (YC * perRate)) + max(trial - s.stress, 0.) / YC;
 		const double q = l > 30. ? l : fastLog(1. + fastExp(min(l, 30.)));

@@ -21,7 +21,8 @@ namespace yade {
 namespace sdk {
 	/// Bytes of arrays put one after another. Attribute type for engines: ((sdk::Blob, state, , Attr::hidden, "...")).
 	/// In a file: number of bytes, a head (kind, format, checksum, length, version that wrote it), the bytes in pieces. So a damaged length never takes
-	/// more memory than the file holds. Saving empties the blob: preSave fills it for each file, and it must not come back when postLoad runs for another reason.
+	/// more memory than the file holds. Saving empties the blob: preSave fills it for each file, and it must not come back when postLoad runs for another
+	/// reason.
 	class Blob {
 	public:
 		void   clear() { bytes.clear(), bytes.shrink_to_fit(); }
@@ -100,8 +101,9 @@ namespace sdk {
 				if (std::memcmp(h.kind, mine.kind, sizeof h.kind) != 0)
 					fail("has no head: the file is damaged, or an older version, which kept no checksum, has written it and must load it");
 				if (h.format != format)
-					fail("has format " + std::to_string(h.format) + ", this version (" MCA_VERSION ") reads format " + std::to_string(format)
-					     + ": version '" + std::string(h.writer, strnlen(h.writer, sizeof h.writer)) + "' has written it and must load it");
+					fail("has format " + std::to_string(h.format) + ", this version (" MCA_VERSION ") reads format "
+					     + std::to_string(format) + ": version '" + std::string(h.writer, strnlen(h.writer, sizeof h.writer))
+					     + "' has written it and must load it");
 				if (h.length != n - sizeof h) fail("is damaged (its length)");
 				while (bytes.size() < h.length) {
 					const size_t at = bytes.size(), more = size_t(std::min<uint64_t>(piece, h.length - at));

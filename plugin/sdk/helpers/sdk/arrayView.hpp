@@ -26,8 +26,8 @@ namespace sdk __attribute__((visibility("hidden"))) {
 	template <> constexpr const char*        bufferFormat<unsigned char>() { return "B"; }
 	template <> constexpr const char*        bufferFormat<signed char>() { return "b"; }
 
-	/// numpy array of the given shape (C order) on memory of `owner`, which lives at least as long. No copy. The caller sees to it that the memory is neither
-	/// moved nor freed while owner lives (an engine that may resize its arrays should return copies, or own each array by a shared pointer).
+	/// numpy array of the given shape (C order) on memory of `owner`, which lives at least as long. No copy. The caller sees to it that the memory is
+	/// neither moved nor freed while owner lives (an engine that may resize its arrays should return copies, or own each array by a shared pointer).
 	template <class T> py::object arrayView(T* data, vector<Py_ssize_t> shape, boost::shared_ptr<void> owner, bool writable = false)
 	{
 		vector<Py_ssize_t> strides(shape.size());
@@ -35,15 +35,19 @@ namespace sdk __attribute__((visibility("hidden"))) {
 		for (size_t i = shape.size(); i-- > 0; step *= shape[i])
 			strides[i] = step;
 		using Item = std::remove_const_t<T>;
-		return makeArrayView(
-		        { const_cast<Item*>(data), bufferFormat<Item>(), Py_ssize_t(sizeof(T)), std::move(shape), std::move(strides), std::move(owner), writable });
+		return makeArrayView({ const_cast<Item*>(data), bufferFormat<Item>(), Py_ssize_t(sizeof(T)), std::move(shape), std::move(strides),
+		                       std::move(owner), writable });
 	}
 	/// the same with a Python object as the owner: `static py::object view(py::object self)` as a property keeps its engine alive
 	template <class T> py::object arrayView(T* data, vector<Py_ssize_t> shape, const py::object& owner, bool writable = false)
 	{
-		return arrayView(data, std::move(shape), boost::shared_ptr<void>(new py::object(owner), [](void* p) { delete static_cast<py::object*>(p); }), writable);
+		return arrayView(
+			data, std::move(shape), boost::shared_ptr<void>(new py::object(owner), [](void* p) { delete static_cast<py::object*>(p); }), writable);
 	}
 	/// a copy as a numpy array of its own
-	template <class T> py::object arrayCopy(const T* data, vector<Py_ssize_t> shape) { return arrayView(data, std::move(shape), boost::shared_ptr<void>()).attr("copy")(); }
+	template <class T> py::object arrayCopy(const T* data, vector<Py_ssize_t> shape)
+	{
+		return arrayView(data, std::move(shape), boost::shared_ptr<void>()).attr("copy")();
+	}
 } // namespace sdk
 } // namespace yade

@@ -46,12 +46,14 @@ namespace sdk {
 		return ~c;
 	}
 
-	/// Checksum over attributes: numbers, strings, vectors and matrices, and arrays of them. What has a check of its own (Blob, other objects) adds nothing.
+	/// Checksum over attributes: numbers, strings, vectors and matrices, and arrays of them. What has a check of its own (Blob, other objects) adds
+	/// nothing.
 	class Seal {
 	public:
 		template <class T> void add(const T& v)
 		{
-			if constexpr (std::is_floating_point_v<T>) bytes(std::isnan(v) ? std::numeric_limits<T>::quiet_NaN() : v); // text keeps no bits of those
+			if constexpr (std::is_floating_point_v<T>)
+				bytes(std::isnan(v) ? std::numeric_limits<T>::quiet_NaN() : v); // text keeps no bits of those
 			else if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>)
 				bytes(v);
 			else if constexpr (isPair<T>(0))
@@ -76,7 +78,10 @@ namespace sdk {
 		template <class T> static constexpr bool isArray(...) { return false; }
 		template <class T> static constexpr auto isCoefficients(int) -> decltype(std::declval<const T&>().coeffs(), true) { return true; }
 		template <class T> static constexpr bool isCoefficients(...) { return false; }
-		template <class T> static constexpr auto isPair(int) -> decltype(std::declval<const T&>().first, std::declval<const T&>().second, true) { return true; }
+		template <class T> static constexpr auto isPair(int) -> decltype(std::declval<const T&>().first, std::declval<const T&>().second, true)
+		{
+			return true;
+		}
 		template <class T> static constexpr bool isPair(...) { return false; }
 		uint32_t crc = 0;
 	};
@@ -93,8 +98,9 @@ namespace sdk {
 		}
 		if (saved != seal.value())
 			throw std::runtime_error(
-			        std::string(name) + ": its attributes in the file are not those that were saved: the file is damaged, was edited (change attributes after "
-			                            "loading), or comes from an older version of the plugin, which must load it.");
+				std::string(name)
+				+ ": its attributes in the file are not those that were saved: the file is damaged, was edited (change attributes after "
+				  "loading), or comes from an older version of the plugin, which must load it.");
 	}
 } // namespace sdk
 } // namespace yade

@@ -41,7 +41,8 @@ namespace sdk __attribute__((visibility("hidden"))) {
 	template <class C> py::object keywordConstructor()
 	{
 		return py::detail::make_raw_function(py::objects::py_function(
-		        RawConstructor { py::make_constructor(&construct<C>) }, boost::mpl::vector2<void, py::object>(), 1, (std::numeric_limits<unsigned>::max)()));
+			RawConstructor { py::make_constructor(&construct<C>) }, boost::mpl::vector2<void, py::object>(), 1,
+			(std::numeric_limits<unsigned>::max)()));
 	}
 
 	template <class C, class T, T C::*member> void setAndPostLoad(C& instance, const T& value)

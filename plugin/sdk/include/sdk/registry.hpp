@@ -15,7 +15,8 @@ namespace sdk __attribute__((visibility("hidden"))) {
 
 	template <class C> void addClass(const char* name)
 	{
-		newClasses().push_back({ name, []() -> Factorable* { return new C; }, []() { return shared_ptr<Factorable>(new C); }, []() -> void* { return new C; } });
+		newClasses().push_back(
+			{ name, []() -> Factorable* { return new C; }, []() { return shared_ptr<Factorable>(new C); }, []() -> void* { return new C; } });
 	}
 	// tell YADE of all classes listed; returns their names. Throws if a name is taken or YADE does not take one in.
 	py::list registerClasses();

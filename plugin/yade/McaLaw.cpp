@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// McaDensity: the order of a step, checks of its results.
-#include "McaDensity.hpp"
+// McaLaw: the order of a step, checks of its results.
+#include "McaLaw.hpp"
 #include "McaBodies.hpp"
 #include "McaCast.hpp"
 #include "McaGuarded.hpp"
@@ -10,26 +10,26 @@
 #include <pkg/common/Sphere.hpp>
 
 namespace yade {
-YADE_PLUGIN((McaDensity));
+YADE_PLUGIN((McaLaw)(McaDensity));
 
 namespace automata = mca::automata;
-Real McaDensity::distance2(const Row& r, const Side& s) const
+Real McaLaw::distance2(const Row& r, const Side& s) const
 {
 	const auto &a = r.state->se3.position, &b = rows[size_t(s.other)].state->se3.position;
 	return mca::sqr(b[0] - a[0]) + mca::sqr(b[1] - a[1]);
 }
 
-void McaDensity::overlapError(const Row& r, const Side& s, Real ratio) const
+void McaLaw::overlapError(const Row& r, const Side& s, Real ratio) const
 {
 	std::ostringstream o;
 	const Row&         q = rows[size_t(s.other)];
-	o << "automata " << r.id << " at (" << r.state->se3.position[0] << ", " << r.state->se3.position[1] << ") m and " << q.id << " at (" << q.state->se3.position[0] << ", "
-	  << q.state->se3.position[1] << ") m are " << ratio << " rest distances apart in step " << steps
+	o << "automata " << r.id << " at (" << r.state->se3.position[0] << ", " << r.state->se3.position[1] << ") m and " << q.id << " at ("
+	  << q.state->se3.position[0] << ", " << q.state->se3.position[1] << ") m are " << ratio << " rest distances apart in step " << steps
 	  << "; the least allowed is 0.5 (0.2 if linked). Remedy: a smaller time step, a smaller impact speed, or no overlap in the packing.";
 	throw mca::Error(o.str());
 }
 
-void McaDensity::checkResults()
+void McaLaw::checkResults()
 {
 	Real limit = std::numeric_limits<Real>::infinity(), speed2 = 0, dMin = limit, pressed = 0;
 	// as in Solver::computeForces: the pressure of what meets something else moves lighter neighbours, too
@@ -46,14 +46,17 @@ void McaDensity::checkResults()
 	for (auto& r : rows) {
 		if (r.bad) {
 			std::ostringstream o;
-			o << "automaton " << r.id << ": volume ratio " << r.m->volumeRatio << " in step " << steps << " is not in (0, 1e6). Remedy: a smaller time step (the limit was " << dtLimit << " s, the step " << lastMove << " s).";
+			o << "automaton " << r.id << ": volume ratio " << r.m->volumeRatio << " in step " << steps
+			  << " is not in (0, 1e6). Remedy: a smaller time step (the limit was " << dtLimit << " s, the step " << lastMove << " s).";
 			throw mca::Error(o.str());
 		}
 		clamped += r.clampedNow;
 		deepest = std::min(deepest, std::sqrt(std::min(r.nearestLink, r.nearestContact)));
 		if (r.nearestContact < mca::deepestContact)
 			for (int c = r.firstContact; c < r.lastContact; c++)
-				if (mca::sqr(distance(r, contacts[size_t(c)]) / contacts[size_t(c)].p->rest[contacts[size_t(c)].side]) <= r.nearestContact * 1.0001) overlapError(r, contacts[size_t(c)], std::sqrt(r.nearestContact));
+				if (mca::sqr(distance(r, contacts[size_t(c)]) / contacts[size_t(c)].p->rest[contacts[size_t(c)].side])
+				    <= r.nearestContact * 1.0001)
+					overlapError(r, contacts[size_t(c)], std::sqrt(r.nearestContact));
 		if (r.nearestLink < mca::deepestLink)
 			for (const Side& s : r.link)
 				if (s.p && mca::sqr(distance(r, s) / s.p->d) <= r.nearestLink * 1.0001) overlapError(r, s, std::sqrt(r.nearestLink));
@@ -66,7 +69,7 @@ void McaDensity::checkResults()
 	dtLimit = limit;
 }
 
-void McaDensity::step()
+void McaLaw::step()
 {
 	worker = std::this_thread::get_id();
 	McaPhys::takeError(); // of a step that another error has ended
@@ -75,7 +78,8 @@ void McaDensity::step()
 	gather(scene);
 	unsettled.clear();
 	findLinks(scene);
-	if (doneAt == scene->iter && pushedAt == scene->iter && hasMoved()) doneAt = pushedAt = -1; // stopped behind NewtonIntegrator: the next step, though O.iter is the same
+	if (doneAt == scene->iter && pushedAt == scene->iter && hasMoved())
+		doneAt = pushedAt = -1; // stopped behind NewtonIntegrator: the next step, though O.iter is the same
 	keepVolumes(scene);
 	for (Row& r : rows)
 		lastMotion(r);
@@ -108,14 +112,14 @@ void McaDensity::step()
 	if (scene->dt > 0 && scene->dt <= dtLimit && std::isfinite(scene->dt)) return;
 	if (scene->dt > dtLimit && shortenStep(scene, dtLimit)) return;
 	std::ostringstream o;
-	if (scene->dt > dtLimit) o << "McaDensity: O.dt = " << scene->dt << " s is above the largest stable step " << dtLimit << " s of body " << stiffest;
-	else o << "McaDensity: O.dt = " << scene->dt << " s must be finite and above zero; the largest stable step is " << dtLimit << " s";
+	if (scene->dt > dtLimit) o << "McaLaw: O.dt = " << scene->dt << " s is above the largest stable step " << dtLimit << " s of body " << stiffest;
+	else o << "McaLaw: O.dt = " << scene->dt << " s must be finite and above zero; the largest stable step is " << dtLimit << " s";
 	o << ". Set O.dt below it, or put McaTimeStepper first in O.engines.";
 	throw mca::Error(o.str());
 }
 
 // For who asks before the step: automata that are not taken in yet at their state of rest, and all when this engine has computed none.
-void McaDensity::prepare(Scene* scene)
+void McaLaw::prepare(Scene* scene)
 {
 	const bool never = !std::isfinite(dtLimit);
 	bool       known = false;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// McaDensity: what it refuses before it computes. A script may change anything between steps, so all of this is looked at in every step, by comparing with what was found good.
+// McaLaw: what it refuses before it computes. A script may change anything between steps, so all of this is looked at in every step, by comparing with what was
+// found good.
 #include "McaBodies.hpp"
 #include "McaCast.hpp"
-#include "McaDensity.hpp"
+#include "McaLaw.hpp"
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
 #include <lib/base/Logging.hpp>
@@ -20,69 +21,76 @@ namespace {
 	bool moves(const sdk::NewtonFacts& n, int groupMask) { return n.mask <= 0 || (n.mask & groupMask); }
 } // namespace
 
-mca::VolumeRule McaDensity::rule() const
+mca::VolumeRule McaLaw::rule() const
 {
 	if (volumeRule == "affine") return mca::VolumeRule::affine;
 	if (volumeRule == "inversePower") return mca::VolumeRule::inversePower;
 	if (volumeRule == "meanDistance") return mca::VolumeRule::meanDistance;
-	throw mca::Error("McaDensity: volumeRule = '" + volumeRule + "' is unknown; it must be 'affine', 'inversePower' or 'meanDistance'.");
+	throw mca::Error("McaLaw: volumeRule = '" + volumeRule + "' is unknown; it must be 'affine', 'inversePower' or 'meanDistance'.");
 }
 
-void McaDensity::checkOptions(const Scene& scene) const
+void McaLaw::checkOptions(const Scene& scene) const
 {
 	rule();
-	if (!(linkFactor >= 1.02 && linkFactor <= 1.5)) refuse("McaDensity: linkFactor = ", linkFactor, " must be from 1.02 to 1.5.");
-	if (!(volumeFilter >= 0 && volumeFilter <= 1)) refuse("McaDensity: volumeFilter = ", volumeFilter, " must be from 0 (off) to 1.");
-	if (scene.isPeriodic) refuse("McaDensity: O.periodic = True, but automata know no periodic cell; set O.periodic = False.");
-	if (scene.subdomain > 0) refuse("McaDensity: this is subdomain ", scene.subdomain, " of a run of yade.mpy; automata run in one process only.");
+	if (!(linkFactor >= 1.02 && linkFactor <= 1.5)) refuse("McaLaw: linkFactor = ", linkFactor, " must be from 1.02 to 1.5.");
+	if (!(volumeFilter >= 0 && volumeFilter <= 1)) refuse("McaLaw: volumeFilter = ", volumeFilter, " must be from 0 (off) to 1.");
+	if (scene.isPeriodic) refuse("McaLaw: O.periodic = True, but automata know no periodic cell; set O.periodic = False.");
+	if (scene.subdomain > 0) refuse("McaLaw: this is subdomain ", scene.subdomain, " of a run of yade.mpy; automata run in one process only.");
 }
 
-void McaDensity::checkEngines(const Scene& scene)
+void McaLaw::checkEngines(const Scene& scene)
 {
 	bool same = seen.size() == scene.engines.size();
 	for (size_t i = 0; same && i < seen.size(); i++)
 		same = seen[i].first == scene.engines[i].get() && seen[i].second == scene.engines[i]->dead;
 	if (same) return;
 	seen.clear(), newtons.clear();
-	const char* order[] = { "McaDensity", "InteractionLoop", "McaForces", "NewtonIntegrator" };
+	const char* order[] = { "McaLaw", "InteractionLoop", "McaForces", "NewtonIntegrator" };
 	int         at[4] = { -1, -1, -1, -1 }, resetter = -1, place = 0;
 	bool        collides = false;
 	for (const auto& e : scene.engines) {
 		place++;
 		if (!e || e->dead) continue;
-		const string name = e->getClassName();
-		if (name == "McaEngine") refuse("O.engines has McaEngine and McaDensity; an automaton can be moved by one of them only.");
+		const string name = dynamic_cast<const McaLaw*>(e.get()) ? "McaLaw" : e->getClassName(); // by whichever of its names
+		if (name == "McaEngine") refuse("O.engines has McaEngine and McaLaw; an automaton can be moved by one of them only.");
 		if (name == "ForceResetter") resetter = place;
 		if (name == "NewtonIntegrator") newtons.push_back(e.get());
 		collides = collides || Omega::instance().isInheritingFrom_recursive(name, "Collider");
 		for (int k = 0; k < 4; k++) {
 			if (name != order[k]) continue;
-			if (k < 3 && at[k] > 0) refuse("McaDensity: O.engines has ", name, " twice; each automaton would be computed twice. Leave one.");
+			if (k < 3 && at[k] > 0) refuse("McaLaw: O.engines has ", name, " twice; each automaton would be computed twice. Leave one.");
 			at[k] = place;
 		}
 	}
 	for (int k = 0; k < 4; k++)
 		if (at[k] < 0 || (k > 0 && at[k] < at[k - 1]))
-			refuse("McaDensity: O.engines must hold McaDensity, InteractionLoop, McaForces and NewtonIntegrator in this order, none of them dead; ", order[k], " is missing or misplaced.");
+			refuse("McaLaw: O.engines must hold McaLaw, InteractionLoop, McaForces and NewtonIntegrator in this order, none of them dead; ",
+			       order[k], " is missing or misplaced.");
 	if (resetter < 0 || (resetter > at[2] && resetter < at[3]))
-		refuse("McaDensity: O.engines needs ForceResetter, not dead, before McaForces (it stands first); without it forces add up from step to step.");
-	if (!collides) refuse("McaDensity: O.engines needs a collider, not dead (InsertionSortCollider with Bo1_Sphere_Aabb(aabbEnlargeFactor=1.4)); without it automata pass through each other.");
+		refuse("McaLaw: O.engines needs ForceResetter, not dead, before McaForces (it stands first); without it forces add up from step to step.");
+	if (!collides)
+		refuse("McaLaw: O.engines needs a collider, not dead (InsertionSortCollider with Bo1_Sphere_Aabb(aabbEnlargeFactor=1.4)); without it automata "
+		       "pass through each other.");
 	for (const auto& e : scene.engines)
 		seen.emplace_back(e.get(), e && e->dead);
 }
 
 // What a body must have to be an automaton of this loop at all.
-McaState& McaDensity::checkBody(const Scene& scene, const Body& b) const
+McaState& McaLaw::checkBody(const Scene& scene, const Body& b) const
 {
-	if (b.clumpId != Body::ID_NONE) refuse("body ", b.id, ": an automaton cannot be a member of a clump; automata of one body are linked (O.bodies.releaseFromClump).");
-	if (b.subdomain != scene.subdomain || (b.flags & Body::FLAG_SUBDOMAIN)) refuse("body ", b.id, " belongs to subdomain ", b.subdomain, " of yade.mpy; automata run in one process only.");
+	if (b.clumpId != Body::ID_NONE)
+		refuse("body ", b.id, ": an automaton cannot be a member of a clump; automata of one body are linked (O.bodies.releaseFromClump).");
+	if (b.subdomain != scene.subdomain || (b.flags & Body::FLAG_SUBDOMAIN))
+		refuse("body ", b.id, " belongs to subdomain ", b.subdomain, " of yade.mpy; automata run in one process only.");
 	if (!b.state) refuse("body ", b.id, ": state is None; give it a McaState (material.newAssocState()).");
 	auto* m = castTo<McaState>(b.state.get());
 	if (!m) refuse("body ", b.id, " has material McaMat but not a McaState; make its state with material.newAssocState().");
 	const Vector3r &x = m->se3.position, &v = m->vel, &w = m->angVel;
 	const auto      size = [](const Vector3r& a) { return std::fabs(a[0]) + std::fabs(a[1]) + std::fabs(a[2]); };
 	const auto      need = [&](const char* what, const Vector3r& a, const char* unit) {
-                if (!(size(a) < 1e300)) refuse("body ", b.id, ": ", what, " (", a[0], ", ", a[1], ", ", a[2], ") ", unit, " is not finite in step ", steps, "; no force can be computed from it. Give finite numbers.");
+                if (!(size(a) < 1e300))
+                        refuse("body ", b.id, ": ", what, " (", a[0], ", ", a[1], ", ", a[2], ") ", unit, " is not finite in step ", steps,
+			            "; no force can be computed from it. Give finite numbers.");
 	};
 	if (size(x) + size(v) + size(w) < 1e300) return *m;
 	need("position", x, "m"), need("velocity", v, "m/s"), need("angular velocity", w, "rad/s");
@@ -90,44 +98,57 @@ McaState& McaDensity::checkBody(const Scene& scene, const Body& b) const
 }
 
 // A body whose material, shape or state was taken away must not drop out of the bodies that it is linked to.
-void McaDensity::checkOther(const Body& b) const
+void McaLaw::checkOther(const Body& b) const
 {
 	const auto* m = b.state ? castTo<const McaState>(b.state.get()) : nullptr;
 	const char* lacks = !b.material || !castTo<const McaMat>(b.material.get()) ? "no McaMat" : !b.shape ? "no shape" : "no Sphere as its shape";
 	if (m && m->law) refuse("body ", b.id, " was an automaton and has now ", lacks, ". Give it back, or erase the body (O.bodies.erase).");
-	if (!b.material && b.shape && b.isBounded()) refuse("body ", b.id, " has a shape but no material: InteractionLoop aborts where something touches it. Give it one, or erase it.");
-	if (b.material && !b.shape && castTo<const McaMat>(b.material.get())) refuse("body ", b.id, " has material McaMat but no shape; give it a Sphere, or another material.");
+	if (!b.material && b.shape && b.isBounded())
+		refuse("body ", b.id, " has a shape but no material: InteractionLoop aborts where something touches it. Give it one, or erase it.");
+	if (b.material && !b.shape && castTo<const McaMat>(b.material.get()))
+		refuse("body ", b.id, " has material McaMat but no shape; give it a Sphere, or another material.");
 }
 
 // An automaton that is new here has its state of rest computed from its neighbours: what another loop or the script has left in it would be lost.
-void McaDensity::checkUntouched(const Row& r) const
+void McaLaw::checkUntouched(const Row& r) const
 {
 	const McaState& m = *r.m;
 	if (m.links > 0 || m.brokenLinks > 0)
-		refuse("body ", r.id, ": state.links = ", m.links, ", brokenLinks = ", m.brokenLinks, ", so McaEngine has moved it before; McaDensity would drop its stresses and heal its broken links. Go on with McaEngine, or make the bodies anew.");
+		refuse("body ", r.id, ": state.links = ", m.links, ", brokenLinks = ", m.brokenLinks,
+		       ", so McaEngine has moved it before; McaLaw would drop its stresses and heal its broken links. Go on with McaEngine, or make the bodies "
+		       "anew.");
 	const auto need = [&](const char* name, Real value, Real rest, const char* unit) {
 		if (value != rest)
-			refuse("body ", r.id, ": state.", name, " = ", value, unit, " before its first step is a result of the law and cannot be given; set it to ", rest, ". plasticStrain, temperature and strength can.");
+			refuse("body ", r.id, ": state.", name, " = ", value, unit,
+			       " before its first step is a result of the law and cannot be given; set it to ", rest,
+			       ". plasticStrain, temperature and strength can.");
 	};
-	if (!(std::fabs(m.se3.orientation.coeffs().squaredNorm() - 1.) < 0.1)) refuse("body ", r.id, ": ori is no rotation; it must be a quaternion of norm 1.");
-	need("pressure", m.pressure, 0, " Pa"), need("volumeRatio", m.volumeRatio, 1, ""), need("stressZZ", m.stressZZ, 0, " Pa"), need("equivalentStress", m.equivalentStress, 0, " Pa");
+	if (!(std::fabs(m.se3.orientation.coeffs().squaredNorm() - 1.) < 0.1))
+		refuse("body ", r.id, ": ori is no rotation; it must be a quaternion of norm 1.");
+	need("pressure", m.pressure, 0, " Pa"), need("volumeRatio", m.volumeRatio, 1, ""), need("stressZZ", m.stressZZ, 0, " Pa"),
+		need("equivalentStress", m.equivalentStress, 0, " Pa");
 }
 
 // What a script may have changed in an automaton that goes on.
-void McaDensity::checkState(const Row& r) const
+void McaLaw::checkState(const Row& r) const
 {
 	const McaState&    m = *r.m;
 	const McaLawState& l = *r.l;
 	if (l.rule != int(rule())) {
 		const char* names[] = { "affine", "inversePower", "meanDistance" };
-		refuse("McaDensity: volumeRule = '", volumeRule, "', but the links of body ", r.id, " were made with '", names[l.rule], "'; the rule can be chosen before the first step only. Set it back.");
+		refuse("McaLaw: volumeRule = '", volumeRule, "', but the links of body ", r.id, " were made with '", names[l.rule],
+		       "'; the rule can be chosen before the first step only. Set it back.");
 	}
-	if (r.d != l.diameter) refuse("body ", r.id, ": radius was ", 0.5 * l.diameter, " m when it was taken in and is now ", 0.5 * r.d, "; links keep their rest distance. Set it back, or erase the body and add another.");
+	if (r.d != l.diameter)
+		refuse("body ", r.id, ": radius was ", 0.5 * l.diameter, " m when it was taken in and is now ", 0.5 * r.d,
+		       "; links keep their rest distance. Set it back, or erase the body and add another.");
 	// heavier is slower, lighter would be beyond the stable step
 	const Real rho = r.material->eos.rho0, least = 0.999 * l.cell * rho, most = 2. * rho * mca::Lattice::cell(r.d);
 	if (!(m.mass >= least && m.mass <= most))
-		refuse("body ", r.id, ": mass ", m.mass, " kg/m must be from ", l.cell * rho, " (density times the area it stands for) to ", most, " (two full cells); a lighter one is not stable at the step that its links allow.");
-	if (!(m.blockedDOFs & State::DOF_RZ) && !(m.inertia[2] > 0 && std::isfinite(m.inertia[2]))) refuse("body ", r.id, ": inertia ", m.inertia[2], " kg m must be finite and above zero, or block the rotation.");
+		refuse("body ", r.id, ": mass ", m.mass, " kg/m must be from ", l.cell * rho, " (density times the area it stands for) to ", most,
+		       " (two full cells); a lighter one is not stable at the step that its links allow.");
+	if (!(m.blockedDOFs & State::DOF_RZ) && !(m.inertia[2] > 0 && std::isfinite(m.inertia[2])))
+		refuse("body ", r.id, ": inertia ", m.inertia[2], " kg m must be finite and above zero, or block the rotation.");
 	const auto need = [&](const char* name, Real value, bool ok, const char* range) {
 		if (!ok) refuse("body ", r.id, ": state.", name, " = ", value, " must be ", range, ".");
 	};
@@ -139,13 +160,15 @@ void McaDensity::checkState(const Row& r) const
 	need("volumeRatio", m.volumeRatio, m.volumeRatio > 0 && std::isfinite(m.volumeRatio), "finite and above zero");
 	need("stressZZ", m.stressZZ, std::isfinite(m.stressZZ), "finite");
 	const auto result = [&](const char* name, Real value, Real was) {
-		if (l.moved > 0 && value != was) refuse("body ", r.id, ": state.", name, " was set to ", value, " (it was ", was, "); it is a result of the law and cannot be prescribed. Set it back.");
+		if (l.moved > 0 && value != was)
+			refuse("body ", r.id, ": state.", name, " was set to ", value, " (it was ", was,
+			       "); it is a result of the law and cannot be prescribed. Set it back.");
 	};
 	result("pressure", m.pressure, l.results[0]), result("volumeRatio", m.volumeRatio, l.results[1]), result("stressZZ", m.stressZZ, l.results[2]);
 }
 
 // The stock collider skips two bodies whose masks have no bit in common, and NewtonIntegrator those without a bit of its own mask.
-void McaDensity::checkMasks(const MaskTable& automata, const MaskTable& others)
+void McaLaw::checkMasks(const MaskTable& automata, const MaskTable& others)
 {
 	vector<std::pair<Real, int>> facts;
 	for (const Engine* n : newtons) {
@@ -154,7 +177,9 @@ void McaDensity::checkMasks(const MaskTable& automata, const MaskTable& others)
 		if (f.damping == 0) continue;
 		for (const Row& r : rows)
 			if (r.m->isDamped && moves(f, r.mask))
-				refuse("NewtonIntegrator.damping = ", f.damping, " would damp body ", r.id, ", an automaton, against the motion of the whole; its law has viscosity of its own. Set damping=0, or state.isDamped=False for automata.");
+				refuse("NewtonIntegrator.damping = ", f.damping, " would damp body ", r.id,
+				       ", an automaton, against the motion of the whole; its law has viscosity of its own. Set damping=0, or "
+				       "state.isDamped=False for automata.");
 	}
 	const auto same = [](const MaskTable& a, const MaskTable& b) {
 		return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](const auto& p, const auto& q) { return p.first == q.first; });
@@ -166,17 +191,22 @@ void McaDensity::checkMasks(const MaskTable& automata, const MaskTable& others)
 		for (const auto& f : facts)
 			n += moves({ f.first, f.second }, mask);
 		if (n != 1)
-			refuse("body ", id, ", an automaton of mask ", mask, ", is moved by ", n ? std::to_string(n) : "no", " NewtonIntegrator", n ? "s" : "", "; it must be one. See NewtonIntegrator.mask (", facts[0].second, "; -1: all bodies).");
+			refuse("body ", id, ", an automaton of mask ", mask, ", is moved by ", n ? std::to_string(n) : "no", " NewtonIntegrator", n ? "s" : "",
+			       "; it must be one. See NewtonIntegrator.mask (", facts[0].second, "; -1: all bodies).");
 		if (mask == 0) refuse("body ", id, ", an automaton, has mask 0: YADE's collider finds no contact for it. Give it a mask, e.g. 1.");
 		for (const auto& [mask2, id2] : automata)
 			if (mask2 > mask && !(mask & mask2))
-				refuse("bodies ", id, " (mask ", mask, ") and ", id2, " (mask ", mask2, ") are automata whose masks have no bit in common: YADE's collider skips such pairs, and they would pass through each other. "
+				refuse("bodies ", id, " (mask ", mask, ") and ", id2, " (mask ", mask2,
+				       ") are automata whose masks have no bit in common: YADE's collider skips such pairs, and they would pass through each "
+				       "other. "
 				       "Give them masks that differ but share a bit, e.g. 1 and 3.");
 	}
 	for (const auto& [mask, id] : others)
 		for (const auto& [mask2, id2] : automata)
 			if (!(mask & mask2) && !sameMasks)
-				LOG_WARN("body " << id << " (mask " << mask << ") and automaton " << id2 << " (mask " << mask2 << ") have no bit in common in their masks: YADE lets them pass through each other.");
+				LOG_WARN(
+					"body " << id << " (mask " << mask << ") and automaton " << id2 << " (mask " << mask2
+						<< ") have no bit in common in their masks: YADE lets them pass through each other.");
 	newtonsGood = facts, automataGood = automata, othersGood = others;
 }
 } // namespace yade

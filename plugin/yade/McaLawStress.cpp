@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// McaDensity: volume, pressure, pair stresses and yield of one automaton, from its neighbours: loops over its pairs that call the kernels.
-#include "McaDensity.hpp"
+// McaLaw: volume, pressure, pair stresses and yield of one automaton, from its neighbours: loops over its pairs that call the kernels.
+#include "McaLaw.hpp"
 #include <kernels/automaton/force.hpp>
 
 namespace yade {
@@ -15,7 +15,7 @@ namespace {
 	template <class F> auto byRule(int rule, F&& f) { return mca::dispatch(VolumeRule(rule), f); }
 } // namespace
 
-void McaDensity::contactVolume(Row& r)
+void McaLaw::contactVolume(Row& r)
 {
 	Real sum         = 0;
 	r.nearestContact = 1;
@@ -32,12 +32,12 @@ void McaDensity::contactVolume(Row& r)
 	r.l->contactSum = sum;
 }
 
-void McaDensity::volume(Row& r, bool withContacts)
+void McaLaw::volume(Row& r, bool withContacts)
 {
 	mca::dispatch(r.material->eos.kind, [&](auto law) { volumeBy<law.value>(r, withContacts); });
 }
 
-template <mca::EosKind law> void McaDensity::volumeBy(Row& r, bool withContacts)
+template <mca::EosKind law> void McaLaw::volumeBy(Row& r, bool withContacts)
 {
 	McaLawState&                    l = *r.l;
 	const mca::VolumeConstants<law> c(*r.material, r.d);
@@ -68,7 +68,9 @@ template <mca::EosKind law> void McaDensity::volumeBy(Row& r, bool withContacts)
 		} else {
 			Real sum = 0;
 			for (int k = 0; k < nLinks; k++)
-				if (r.link[k].p) sum += mca::linkWeight(l.flags, k) * mca::volumeTerm<rule.value>(r.link[k].p->d, square(vectorTo(*r.state, *rows[size_t(r.link[k].other)].state)));
+				if (r.link[k].p)
+					sum += mca::linkWeight(l.flags, k)
+						* mca::volumeTerm<rule.value>(r.link[k].p->d, square(vectorTo(*r.state, *rows[size_t(r.link[k].other)].state)));
 			J       = mca::volumeRatio<rule.value>((sum + contactSum - l.rest) * l.invN);
 			now     = step(true);
 			l.share = mca::pressureShare<rule.value>(now.P, J, l.cell * l.invN);
@@ -83,8 +85,20 @@ template <mca::EosKind law> void McaDensity::volumeBy(Row& r, bool withContacts)
 	r.closing     = lastMove > 0 ? std::max(-l.dTheta, Real(0)) * r.d / lastMove : 0.;
 }
 
+/// (7)-(8): stresses of this side of a pair before yield.
+Pair<Real> McaLaw::trial(const Row& r, const Side& s, Pair<Real> before) const
+{
+	const Row&      o = rows[size_t(s.other)];
+	const Real      q = mca::arm(r.d, o.d), on = r.fresh || o.fresh ? 0. : lastMove, spin = mca::pairSpin(r.motion[2], o.motion[2], q, on);
+	const Vec<Real> moved { (o.motion[0] - r.motion[0]) * on, (o.motion[1] - r.motion[1]) * on };
+	const auto      strain = mca::strainIncrement(vectorTo(*r.state, *o.state), moved, spin);
+	const auto      now    = mca::trialStress(before, strain, mca::pairDilation(r.l->dTheta, o.l->dTheta), s.p->twoG);
+	s.p->s[s.side] = now.normal, s.p->tau[s.side] = now.shear;
+	return now;
+}
+
 // Trial stresses (7)-(9) of this side of all pairs, radial return (10)-(11), friction, fracture criteria.
-void McaDensity::stress(Row& r)
+void McaLaw::stress(Row& r)
 {
 	McaLawState&         l = *r.l;
 	McaState&            m = *r.m;
@@ -92,20 +106,12 @@ void McaDensity::stress(Row& r)
 	const Real           J = m.volumeRatio, dt = lastMove, threeG = 3. * material.G, perOldJ = mca::perOldRatio(l.dTheta, J);
 	mca::PairSums<Real>  sums;
 	const auto           old   = [&](const Side& s) { return Pair<Real> { s.p->s[s.side] * perOldJ, s.p->tau[s.side] * perOldJ }; };
-	const auto           trial = [&](const Side& s, Pair<Real> before) { // this side's stresses before yield
-		const Row& o  = rows[size_t(s.other)];
-		const Real q  = mca::arm(r.d, o.d), on = r.fresh || o.fresh ? 0. : dt, spin = mca::pairSpin(r.motion[2], o.motion[2], q, on);
-		const auto e  = mca::strainIncrement(vectorTo(*r.state, *o.state), Vec<Real> { (o.motion[0] - r.motion[0]) * on, (o.motion[1] - r.motion[1]) * on }, spin);
-		const auto now = mca::trialStress(before, e, mca::pairDilation(l.dTheta, o.l->dTheta), s.p->twoG);
-		s.p->s[s.side] = now.normal, s.p->tau[s.side] = now.shear;
-		return now;
-	};
 	for (int k = 0; k < nLinks; k++) {
 		const Side& s = r.link[k];
 		if (!s.p) continue;
 		const Real weight = mca::linkWeight(l.flags, k);
 		const auto before = old(s);
-		sums.add<true>(before, trial(s, before), mca::pairDilation(l.dTheta, rows[size_t(s.other)].l->dTheta), weight, weight);
+		sums.add<true>(before, trial(r, s, before), mca::pairDilation(l.dTheta, rows[size_t(s.other)].l->dTheta), weight, weight);
 	}
 	vector<Pair<Real>> held; // stresses of the contacts before the step
 	Real               ofContacts = 0, bothOfContacts = 0;
@@ -116,14 +122,17 @@ void McaDensity::stress(Row& r)
 			s.p->s[s.side] = s.p->tau[s.side] = 0;
 			continue;
 		}
-		const auto now = trial(s, held.back());
+		const auto now = trial(r, s, held.back());
 		ofContacts += mca::square(now), bothOfContacts += mca::product(held.back(), now);
 	}
 	sums.square += ofContacts, sums.both += bothOfContacts;
 
-	const Real  before = m.stressZZ, szzTrial = mca::trialSzz(2. * material.G, l.dTheta, before), sigma = mca::equivalentStress(sums.square * l.invN, szzTrial);
+	const Real before = m.stressZZ, szzTrial = mca::trialSzz(2. * material.G, l.dTheta, before),
+		   sigma = mca::equivalentStress(sums.square * l.invN, szzTrial);
 	mca::Return back { 1., 0. };
-	mca::dispatch(material.yield.kind, [&](auto kind) { back = mca::radialReturn<kind.value>(material.yield, sigma, m.plasticStrain, m.temperature, threeG, dt); });
+	mca::dispatch(material.yield.kind, [&](auto kind) {
+		back = mca::radialReturn<kind.value>(material.yield, sigma, m.plasticStrain, m.temperature, threeG, dt);
+	});
 	m.stressZZ = szzTrial * back.scale;
 	m.plasticStrain += back.dEqps;
 	if (material.yield.heats()) m.temperature = mca::warmed(material.yield, m.temperature, sigma, back);
@@ -142,19 +151,25 @@ void McaDensity::stress(Row& r)
 	for (int c = r.firstContact; c < r.lastContact; c++)
 		contactFriction(r, contacts[size_t(c)], held[size_t(c - r.firstContact)], scale);
 	m.equivalentStress = mca::equivalentStressAfter(back.scale, sums.square * l.invN, m.stressZZ);
-	if (material.fracture.active()) l.criterion = mca::criterion(mca::Criteria(material.fracture), m.plasticStrain, m.pressure, m.equivalentStress, m.strength);
+	if (material.fracture.active())
+		l.criterion = mca::criterion(mca::Criteria(material.fracture), m.plasticStrain, m.pressure, m.equivalentStress, m.strength);
 }
 
 // No tension, Coulomb friction; what this side dissipates.
-void McaDensity::contactFriction(Row& r, const Side& s, Pair<Real> before, Real scale)
+void McaLaw::contactFriction(Row& r, const Side& s, Pair<Real> before, Real scale)
 {
 	McaPhys&    p     = *s.p;
 	const Row&  o     = rows[size_t(s.other)];
 	const Real  r2    = square(vectorTo(*r.state, *o.state));
 	const auto  press = [&](const McaLawState& l, int side) {
-		return p.pushes(side, r2) ? l.share * byRule(l.rule, [&](auto rule) { return mca::pressureShape<mca::ofContacts(rule.value)>(p.rest[side], 1. / r2); }) : 0.;
+                return p.pushes(side, r2)
+			 ? l.share * byRule(l.rule, [&](auto rule) { return mca::pressureShape<mca::ofContacts(rule.value)>(p.rest[side], 1. / r2); })
+			 : 0.;
 	};
-	const mca::ContactSide side { before, { p.s[s.side], p.tau[s.side] }, press(*r.l, s.side) + press(*o.l, 1 - s.side), r2, p.d, p.friction, r.m->volumeRatio, scale, p.touching(r2) };
+	const mca::ContactSide side {
+		before,        { p.s[s.side], p.tau[s.side] }, press(*r.l, s.side) + press(*o.l, 1 - s.side), r2, p.d, p.friction, r.m->volumeRatio, scale,
+		p.touching(r2)
+	};
 	const auto             after = mca::afterFriction(side);
 	const auto             over  = [](Real a) { return a > 0 ? 1. / a : 0.; };
 	const auto             work  = mca::contactWork(side, after, over(p.twoG), over(r.material->G), r.l->dTheta, o.l->dTheta);

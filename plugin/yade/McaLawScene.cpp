@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// McaDensity: which bodies and pairs there are in this step. Links are made when an automaton is first seen, and follow bodies that are added and erased.
+// McaLaw: which bodies and pairs there are in this step. Links are made when an automaton is first seen, and follow bodies that are added and erased.
 #include "McaBodies.hpp"
 #include "McaCast.hpp"
-#include "McaDensity.hpp"
+#include "McaLaw.hpp"
 #include <atomic>
 #include <core/InteractionLoop.hpp>
 #include <core/Scene.hpp>
@@ -29,7 +29,9 @@ namespace {
 			return;
 		}
 		scene.interactions->erase(id, other, I->linIx);
-		throw mca::Error("bodies " + std::to_string(id) + " and " + std::to_string(other) + ": their interaction has no McaPhys; InteractionLoop needs Ip2_McaMat_McaMat_McaPhys, and no other for McaMat.");
+		throw mca::Error(
+			"bodies " + std::to_string(id) + " and " + std::to_string(other)
+			+ ": their interaction has no McaPhys; InteractionLoop needs Ip2_McaMat_McaMat_McaPhys, and no other for McaMat.");
 	}
 	/// O.bodies.clear() leaves the interactions of the old bodies, which YADE would go on with under the numbers of new ones, and the collider's order.
 	void clearStale(Scene& scene)
@@ -57,7 +59,7 @@ namespace {
 } // namespace
 
 // A scene of its own: nothing goes on from what this engine did before.
-void McaDensity::forget()
+void McaLaw::forget()
 {
 	filterTime = lastMove = 0, steps = brokenLinks = clamped = 0, doneAt = bookedAt = pushedAt = -1, deepest = 1;
 	plastic = viscous = lastViscous = frictional = fracture = coupling = heated = joined = 0;
@@ -65,7 +67,7 @@ void McaDensity::forget()
 }
 
 // Links, slots, weights and the state of rest are those of the fast solver, when automata are added as well: new links form with those that are new only.
-void McaDensity::takeIn(Scene* scene)
+void McaLaw::takeIn(Scene* scene)
 {
 	for (const Row& r : rows)
 		if (!r.l) checkUntouched(r);
@@ -114,7 +116,8 @@ void McaDensity::takeIn(Scene* scene)
 	try {
 		for (const Row& r : rows)
 			for (int k = 0; k < nLinks; k++)
-				if (mca::holds(r.l->flags, k) && r.l->partner[size_t(k)] > r.id) makeLink(*scene, r.id, r.l->partner[size_t(k)], k, mca::linkWeight(r.l->flags, k) < 1.);
+				if (mca::holds(r.l->flags, k) && r.l->partner[size_t(k)] > r.id)
+					makeLink(*scene, r.id, r.l->partner[size_t(k)], k, mca::linkWeight(r.l->flags, k) < 1.);
 	} catch (...) { // they stay new
 		McaPhys::linking = false;
 		for (int id : newcomers)
@@ -124,7 +127,7 @@ void McaDensity::takeIn(Scene* scene)
 	McaPhys::linking = false;
 }
 
-void McaDensity::gather(Scene* scene)
+void McaLaw::gather(Scene* scene)
 {
 	const auto& bodies = scene->bodies->body;
 	checkNumbers(*scene);
@@ -154,20 +157,24 @@ void McaDensity::gather(Scene* scene)
 		rows.push_back(r);
 	}
 	if (wall >= 0 && grain >= 0) // their functor would have the materials the other way round, where InteractionLoop aborts
-		throw mca::Error("body " + std::to_string(wall) + " is a wall of McaMat and body " + std::to_string(grain) + " a sphere of another material; there is no law for the two. Give the wall a FrictMat.");
+		throw mca::Error(
+			"body " + std::to_string(wall) + " is a wall of McaMat and body " + std::to_string(grain)
+			+ " a sphere of another material; there is no law for the two. Give the wall a FrictMat.");
 	checkMasks(masks, otherMasks);
 	if (old && linkFactorUsed > 0 && linkFactor != linkFactorUsed)
-		throw mca::Error("McaDensity: linkFactor = " + std::to_string(linkFactor) + ", but links were made with " + std::to_string(linkFactorUsed) + "; it can be chosen before the first step only. Set it back.");
+		throw mca::Error(
+			"McaLaw: linkFactor = " + std::to_string(linkFactor) + ", but links were made with " + std::to_string(linkFactorUsed)
+			+ "; it can be chosen before the first step only. Set it back.");
 	if (fresh) takeIn(scene);
 	readMaterials(scene);
 	for (const Row& r : rows)
 		checkState(r);
-	if (steps == 0 && lastMove == 0) // an engine that goes on with what another McaDensity has moved
+	if (steps == 0 && lastMove == 0) // an engine that goes on with what another McaLaw has moved
 		for (const Row& r : rows)
 			lastMove = std::max(lastMove, r.l->moved);
 }
 
-void McaDensity::readMaterials(Scene* scene)
+void McaLaw::readMaterials(Scene* scene)
 {
 	vector<const McaMat*> all;
 	vector<mca::Material> constants;
@@ -186,7 +193,7 @@ void McaDensity::readMaterials(Scene* scene)
 }
 
 // Constants of a pair from its materials: when it is new, when it was loaded, and when a script has changed a material or given a body another one.
-void McaDensity::pairConstants(const Row& r, const Side& s) const
+void McaLaw::pairConstants(const Row& r, const Side& s) const
 {
 	McaPhys&   p = *s.p;
 	const Row &a = s.side ? rows[size_t(s.other)] : r, &b = s.side ? r : rows[size_t(s.other)];
@@ -198,7 +205,7 @@ void McaDensity::pairConstants(const Row& r, const Side& s) const
 	p.viscLinear = v.linear, p.viscQuadratic = v.quadratic;
 }
 
-void McaDensity::findLinks(Scene* scene)
+void McaLaw::findLinks(Scene* scene)
 {
 	for (auto& r : rows) {
 		int found = 0;
@@ -218,10 +225,14 @@ void McaDensity::findLinks(Scene* scene)
 			const int other = r.l->partner[size_t(k)];
 			if (!((missing >> k) & 1)) continue;
 			if (other >= 0 && size_t(other) < place.size() && place[size_t(other)] >= 0)
-				throw mca::Error("automata " + std::to_string(r.id) + " and " + std::to_string(other) + " are linked, but their interaction is gone in step " + std::to_string(steps)
-				                 + ". Something has erased it (O.interactions.clear?); load the last saved state.");
+				throw mca::Error(
+					"automata " + std::to_string(r.id) + " and " + std::to_string(other)
+					+ " are linked, but their interaction is gone in step " + std::to_string(steps)
+					+ ". Something has erased it (O.interactions.clear?); load the last saved state.");
 			if (other >= 0 && size_t(other) < place.size() && scene->bodies->body[size_t(other)])
-				throw mca::Error("body " + std::to_string(other) + " is linked to automaton " + std::to_string(r.id) + " but is no automaton any more; give it back its McaMat, Sphere and state, or erase it.");
+				throw mca::Error(
+					"body " + std::to_string(other) + " is linked to automaton " + std::to_string(r.id)
+					+ " but is no automaton any more; give it back its McaMat, Sphere and state, or erase it.");
 			r.l->flags = (r.l->flags & ~mca::slotBits(k)) | mca::exposedBit; // its partner was erased
 			r.l->partner[size_t(k)] = -1;
 			relinked.push_back(r.id);
@@ -230,7 +241,7 @@ void McaDensity::findLinks(Scene* scene)
 }
 
 // Who has lost or got links because bodies were erased or added keeps the volume that it had, measured by the links that it has now.
-void McaDensity::keepVolumes(Scene* scene)
+void McaLaw::keepVolumes(Scene* scene)
 {
 	if (relinked.empty()) return;
 	std::sort(relinked.begin(), relinked.end());
@@ -243,17 +254,24 @@ void McaDensity::keepVolumes(Scene* scene)
 		keepVolume(i, rows[size_t(i)].m->volumeRatio);
 	}
 	relinked.clear();
-	if (doneAt == scene->iter) doneAt = -1, lastMove = 0; // a step that was stopped half-way: its strain is in the stresses, pressures are not those of the links now
+	if (doneAt == scene->iter)
+		doneAt = -1, lastMove = 0; // a step that was stopped half-way: its strain is in the stresses, pressures are not those of the links now
 }
 
 namespace {
-	Vector3r placeOf(const State& s) { return Vector3r(s.se3.position[0], s.se3.position[1], 2. * std::atan2(s.se3.orientation.z(), s.se3.orientation.w())); }
+	Vector3r placeOf(const State& s)
+	{
+		return Vector3r(s.se3.position[0], s.se3.position[1], 2. * std::atan2(s.se3.orientation.z(), s.se3.orientation.w()));
+	}
 	/// From one place to another, the shorter way round.
-	Vector3r way(const Vector3r& from, const Vector3r& to) { return Vector3r(to[0] - from[0], to[1] - from[1], std::remainder(to[2] - from[2], 2. * M_PI)); }
+	Vector3r way(const Vector3r& from, const Vector3r& to)
+	{
+		return Vector3r(to[0] - from[0], to[1] - from[1], std::remainder(to[2] - from[2], 2. * M_PI));
+	}
 }
 
 /// NewtonIntegrator has moved the bodies since they got the forces of this step.
-bool McaDensity::hasMoved() const
+bool McaLaw::hasMoved() const
 {
 	return std::any_of(rows.begin(), rows.end(), [&](const Row& r) { // not a script
 		const Vector3r meant = r.l->expected * lastMove;
@@ -262,7 +280,7 @@ bool McaDensity::hasMoved() const
 }
 
 /// The velocity with which the last move was made. It is that of the state unless a script has set another one since, or another place.
-void McaDensity::lastMotion(Row& r) const
+void McaLaw::lastMotion(Row& r) const
 {
 	const State&       s = *r.state;
 	const McaLawState& l = *r.l;
@@ -282,7 +300,7 @@ void McaDensity::lastMotion(Row& r) const
 	part(2, 1);
 }
 
-void McaDensity::findContacts(Scene* scene)
+void McaLaw::findContacts(Scene* scene)
 {
 	contacts.clear();
 	const auto& bodies = scene->bodies->body;

@@ -10,7 +10,7 @@
 
 namespace yade {
 
-class McaDensity : public McaSolverEngine {
+class McaLaw : public McaSolverEngine {
 public:
 	void step() override;
 	Real criticalTimeStep() const override { return dtLimit; }
@@ -21,19 +21,30 @@ public:
 	py::dict counters() const;
 	py::list links() const;
 	// clang-format off
-	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(McaDensity, McaSolverEngine,
-		"First half of the law of movable cellular automata in YADE's loop (plane strain x, y): volume and pressure of every automaton, trial stresses of its pairs, radial return, fracture "
-		"and contact friction, by the same formulas, at the same steps and in the same order as :yref:`McaEngine`, written plainly. O.engines: ForceResetter, collider "
-		"(Bo1_Sphere_Aabb with aabbEnlargeFactor 1.4), McaDensity, InteractionLoop (Ig2_Sphere_Sphere_ScGeom with interactionDetectionFactor 1.4, :yref:`Ip2_McaMat_McaMat_McaPhys`, for walls "
-		":yref:`Ip2_FrictMat_McaMat_McaPhys`, :yref:`Law2_ScGeom_McaPhys_Mca`), :yref:`McaForces`, NewtonIntegrator(damping=0). Bodies closer than linkFactor diameters with the same mask are linked in the "
-		"first step; bodies added later link with each other and with free places of old ones in the same way. Who loses or gets links because bodies are erased or added keeps its volume and stresses. "
-		"O.dt is checked against the largest stable step, or set by :yref:`McaTimeStepper`. Bodies, materials, engines and masks are looked at in every step; what cannot be computed ends the run with an error "
-		"before anything moves: masks of two automata without a common bit (YADE's collider skips such pairs), damping or a mask of NewtonIntegrator that concerns automata, dead or doubled engines, "
-		"O.periodic, clumps of automata, yade.mpy, states that :yref:`McaEngine` has moved. An engine whose automata are all new starts from the beginning.",
-		((string, volumeRule, "affine", , "'affine', 'inversePower' or 'meanDistance', see McaEngine; read when links are made, a change after that is refused"))
-		((Real, linkFactor, 1.2, , "bodies closer than this many diameters are linked [-], 1.02 to 1.5; read when links are made, a change after the first step is refused"))
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(McaLaw, McaSolverEngine,
+		"First half of the law of movable cellular automata in YADE's loop (plane strain x, y): volume and pressure of every automaton, trial "
+		"stresses of its pairs, radial return, fracture "
+		"and contact friction, by the same formulas, at the same steps and in the same order as :yref:`McaEngine`, written plainly. O.engines: "
+		"ForceResetter, collider "
+		"(Bo1_Sphere_Aabb with aabbEnlargeFactor 1.4), McaLaw, InteractionLoop (Ig2_Sphere_Sphere_ScGeom with interactionDetectionFactor 1.4, "
+		":yref:`Ip2_McaMat_McaMat_McaPhys`, for walls "
+		":yref:`Ip2_FrictMat_McaMat_McaPhys`, :yref:`Law2_ScGeom_McaPhys_Mca`), :yref:`McaForces`, NewtonIntegrator(damping=0). Bodies closer than "
+		"linkFactor diameters with the same mask are linked in the "
+		"first step; bodies added later link with each other and with free places of old ones in the same way. Who loses or gets links because "
+		"bodies are erased or added keeps its volume and stresses. "
+		"O.dt is checked against the largest stable step, or set by :yref:`McaTimeStepper`. Bodies, materials, engines and masks are looked at in "
+		"every step; what cannot be computed ends the run with an error "
+		"before anything moves: masks of two automata without a common bit (YADE's collider skips such pairs), damping or a mask of NewtonIntegrator "
+		"that concerns automata, dead or doubled engines, "
+		"O.periodic, clumps of automata, yade.mpy, states that :yref:`McaEngine` has moved. An engine whose automata are all new starts from the "
+		"beginning.",
+		((string, volumeRule, "affine", , "'affine', 'inversePower' or 'meanDistance', see McaEngine; read when links are made, a change after that "
+		    "is refused"))
+		((Real, linkFactor, 1.2, , "bodies closer than this many diameters are linked [-], 1.02 to 1.5; read when links are made, a change after the "
+		    "first step is refused"))
 		((Real, linkFactorUsed, 0, Attr::hidden, "with which links were made [-]; 0: none yet"))
-		((Real, volumeFilter, 0.1, , "rate at which stripes of volume fade in flowing material, in c0/d [-], 0 to 1; see McaEngine; read in every step"))
+		((Real, volumeFilter, 0.1, , "rate at which stripes of volume fade in flowing material, in c0/d [-], 0 to 1; see McaEngine; read in every "
+		    "step"))
 		((Real, filterTime, 0, Attr::hidden, "since the last exchange of volume [s]"))
 		((int, seed, 1, , "seed of the scattered strengths; read when automata are taken in: in the first step and when bodies are added"))
 		((long, steps, 0, Attr::readonly, "steps done; output"))
@@ -52,16 +63,20 @@ public:
 		((Real, fracture, 0, Attr::readonly, "energy released by fracture so far, while O.trackEnergy [J/m]; output"))
 		((Real, coupling, 0, Attr::readonly, "work of the pair stresses that went into volume so far, while O.trackEnergy [J/m]; output"))
 		((Real, heated, 0, Attr::readonly, "part of the dissipation that stands in the internal energy of mieGruneisen materials [J/m]; output"))
-		((Real, joined, 0, Attr::readonly, "energy that added bodies have brought minus what erased ones have taken along, while O.trackEnergy [J/m]: energies()['total'] changes by it, and total - joined goes on; output"))
+		((Real, joined, 0, Attr::readonly, "energy that added bodies have brought minus what erased ones have taken along, while O.trackEnergy "
+		    "[J/m]: energies()['total'] changes by it, and total - joined goes on; output"))
 		((Real, lastTotal, 0, Attr::hidden, "energies()['total'] of the last step [J/m]"))
 		((long, bookedAt, -1, Attr::hidden, "O.iter of the last step with O.trackEnergy"))
 		((vector<int>, members, , Attr::hidden, "ids of the automata of the last step"))
 		,
 		/* ctor */
 		,
-		.def("energies", &McaDensity::energies, "Energies [J/m] now, and dissipations since O.trackEnergy was set: 'kinetic', 'volumetric', 'deviatoric', 'plastic', 'viscous', 'friction', 'fracture', 'coupling', 'total'; 'joined': what total owes to bodies added and erased since. Raises RuntimeError while the simulation runs in the background.")
-		.def("counters", &McaDensity::counters, "Work done so far: steps, brokenLinks, clamped, deepest.")
-		.def("links", &McaDensity::links, "Pairs of body ids whose link holds, list of (id1, id2). Raises RuntimeError while the simulation runs in the background.")
+		.def("energies", &McaLaw::energies, "Energies [J/m] now, and dissipations since O.trackEnergy was set: 'kinetic', 'volumetric', "
+		    "'deviatoric', 'plastic', 'viscous', 'friction', 'fracture', 'coupling', 'total'; 'joined': what total owes to bodies added and erased "
+		    "since. Raises RuntimeError while the simulation runs in the background.")
+		.def("counters", &McaLaw::counters, "Work done so far: steps, brokenLinks, clamped, deepest.")
+		.def("links", &McaLaw::links, "Pairs of body ids whose link holds, list of (id1, id2). Raises RuntimeError while the simulation runs in the "
+		    "background.")
 	)
 	// clang-format on
 
@@ -136,6 +151,7 @@ private:
 	void                       volume(Row&, bool withContacts);
 	template <mca::EosKind law> void       volumeBy(Row&, bool withContacts);
 	void                       stress(Row&);
+	mca::Pair<Real>            trial(const Row&, const Side&, mca::Pair<Real> before) const;
 	void                       contactFriction(Row&, const Side&, mca::Pair<Real> before, Real scale);
 	void                       scaleStresses(const Row&, Real ratio);
 	void                       checkResults();
@@ -146,6 +162,11 @@ private:
 	void                       refuseWhileRunning(const char* what) const;
 	int                        energyIndex[8] = { -1, -1, -1, -1, -1, -1, -1, -1 };
 };
+REGISTER_SERIALIZABLE(McaLaw);
+
+class McaDensity : public McaLaw {
+	YADE_SDK_OLD_NAME(McaDensity, McaLaw, "The name that :yref:`McaLaw` had before; scripts and files that use it go on working.")
+};
 REGISTER_SERIALIZABLE(McaDensity);
 
 class McaForces : public GlobalEngine {
@@ -153,8 +174,10 @@ public:
 	void action() override;
 	// clang-format off
 	YADE_CLASS_BASE_DOC(McaForces, GlobalEngine,
-		"Adds the pair forces that :yref:`Law2_ScGeom_McaPhys_Mca` has left in the pairs to the bodies, for each body in the order of its links and of its contacts' ids: the sums do not depend on "
-		"the number of threads, nor on the order of O.interactions after loading. Stops the run before anything moves when a force is not finite. Comes after InteractionLoop. No attributes of its own.")
+		"Adds the pair forces that :yref:`Law2_ScGeom_McaPhys_Mca` has left in the pairs to the bodies, for each body in the order of its links and "
+		"of its contacts' ids: the sums do not depend on "
+		"the number of threads, nor on the order of O.interactions after loading. Stops the run before anything moves when a force is not finite. "
+		"Comes after InteractionLoop. No attributes of its own.")
 	// clang-format on
 };
 REGISTER_SERIALIZABLE(McaForces);

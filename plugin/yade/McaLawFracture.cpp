@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// McaDensity: breaking of links and exchange of volume, at the steps and in the order of plugin/automata.
-#include "McaDensity.hpp"
+// McaLaw: breaking of links and exchange of volume, at the steps and in the order of plugin/automata.
+#include "McaLaw.hpp"
 #include <kernels/automaton/energy.hpp>
 #include <kernels/automaton/filter.hpp>
 
@@ -9,7 +9,7 @@ using mca::nLinks;
 using mca::sqr;
 using mca::VolumeRule;
 
-bool McaDensity::breaks(const Row& r, int k) const
+bool McaLaw::breaks(const Row& r, int k) const
 {
 	const Side& s = r.link[k];
 	if (!r.material->fracture.active()) return false;
@@ -17,13 +17,14 @@ bool McaDensity::breaks(const Row& r, int k) const
 	return mca::breaks(r.material->fracture, end(r, s.side), end(rows[size_t(s.other)], 1 - s.side), distance2(r, s), s.p->d);
 }
 
-void McaDensity::breakLinks()
+void McaLaw::breakLinks()
 {
 	vector<std::pair<int, int>> pairs; // (row, link)
 	vector<int>                 touched;
 	for (size_t i = 0; i < rows.size(); i++)
 		for (int k = 0; k < nLinks; k++)
-			if (rows[i].link[k].p && breaks(rows[i], k)) pairs.emplace_back(int(i), k), touched.push_back(int(i)), touched.push_back(rows[i].link[k].other);
+			if (rows[i].link[k].p && breaks(rows[i], k))
+				pairs.emplace_back(int(i), k), touched.push_back(int(i)), touched.push_back(rows[i].link[k].other);
 	std::sort(touched.begin(), touched.end());
 	touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
 	// the volume at the present positions, as all links measure it: the work of the last move must not be lost
@@ -50,7 +51,7 @@ void McaDensity::breakLinks()
 }
 
 /// det F of the links that hold, at the present positions.
-Real McaDensity::determinantNow(const Row& r) const
+Real McaLaw::determinantNow(const Row& r) const
 {
 	mca::Tensor<Real> sum = {};
 	for (int k = 0; k < nLinks; k++) {
@@ -62,7 +63,7 @@ Real McaDensity::determinantNow(const Row& r) const
 }
 
 // What the links had measured goes on as the rest state of what is left.
-void McaDensity::keepVolume(int i, Real J)
+void McaLaw::keepVolume(int i, Real J)
 {
 	Row&         r = rows[size_t(i)];
 	McaLawState& l = *r.l;
@@ -83,10 +84,10 @@ void McaDensity::keepVolume(int i, Real J)
 	unsettled.emplace_back(i, r.m->volumeRatio);
 }
 
-Real McaDensity::coldEnergyAt(const Row& r, Real J) const { return mca::coldEnergy(*r.material, r.l->cell, J); }
+Real McaLaw::coldEnergyAt(const Row& r, Real J) const { return mca::coldEnergy(*r.material, r.l->cell, J); }
 
 /// Stresses of all its pairs, kept as J times them.
-void McaDensity::scaleStresses(const Row& r, Real ratio)
+void McaLaw::scaleStresses(const Row& r, Real ratio)
 {
 	for (const Side& s : r.link)
 		if (s.p) s.p->s[s.side] *= ratio, s.p->tau[s.side] *= ratio;
@@ -97,7 +98,7 @@ void McaDensity::scaleStresses(const Row& r, Real ratio)
 }
 
 // See mca::Settling: what has lost its volume has it from its contacts from now on; what cannot go on is released, and booked.
-void McaDensity::settleVolumes(bool account)
+void McaLaw::settleVolumes(bool account)
 {
 	for (const auto& entry : unsettled) {
 		Row&       r      = rows[size_t(entry.first)];
@@ -131,7 +132,7 @@ void McaDensity::settleVolumes(bool account)
 	unsettled.clear();
 }
 
-void McaDensity::filterVolumes(bool account)
+void McaLaw::filterVolumes(bool account)
 {
 	const auto exchanges = [](const Row& r) { return mca::exchangesVolume(r.m->plasticStrain, r.l->flags, r.l->offset); };
 	for (Row& r : rows) {
@@ -159,7 +160,8 @@ void McaDensity::filterVolumes(bool account)
 			Real pairs = 0;
 			for (const Side& s : r.link)
 				pairs += mca::pairEnergy(s.p->s[s.side], s.p->tau[s.side], now, s.p->twoG);
-			coupling += (r.material->eos.heats() ? 0. : coldEnergyAt(r, now) - coldEnergyAt(r, J)) + mca::deviatorEnergy(r.material->G, r.d, pairs, now, r.m->stressZZ, r.l->invN) * (1. - ratio);
+			coupling += (r.material->eos.heats() ? 0. : coldEnergyAt(r, now) - coldEnergyAt(r, J))
+				+ mca::deviatorEnergy(r.material->G, r.d, pairs, now, r.m->stressZZ, r.l->invN) * (1. - ratio);
 		}
 		r.m->volumeRatio = J;
 		r.l->offset *= ratio;
