@@ -99,8 +99,8 @@ def mayMakeRoots():
 class Root:
 	"""A root of one release in which `owner` has the tree. Use as a context manager: what it mounts it unmounts."""
 
-	def __init__(self, suite, owner, ccache=None, end=float('inf')):
-		self.suite, self.owner, self.ccache, self.end = suite, owner, ccache, end
+	def __init__(self, suite, owner, ccache=None, end=float('inf'), late=Broken):
+		self.suite, self.owner, self.ccache, self.end, self.late = suite, owner, ccache, end, late
 		self.name = '%s %s' % (suite, owner)
 		self.path = ROOTS / ('%s-%s' % (suite, owner))
 		self.home = {'root': '/root', 'anna': '/home/anna'}
@@ -158,7 +158,7 @@ class Root:
 			                'CCACHE_SLOPPINESS=pch_defines,time_macros']
 		if self.ending: raise Broken('interrupted')
 		left = self.end - time.time()
-		if left < 0: raise Broken('the time is over, what is left was not tried')
+		if left < 0: raise self.late('the time is over, what is left was not tried')
 		number = '0:0' if user == 'root' else '1000:1000'
 		timed = 'cd %s || exit; TIMEFORMAT="PROCESSORS %%U %%S"; time { %s\n}' % (folder, command)
 		full = ['chroot', '--userspec=' + number, '--groups=' + number.split(':')[0], str(self.path), '/usr/bin/env', '-i', *environment, 'bash', '-c', timed]
@@ -168,6 +168,7 @@ class Root:
 		except subprocess.TimeoutExpired:
 			self.stop()
 			text = self.running.communicate()[0] + '\nstopped: the time is over'
+			if self.late is Skipped: raise Skipped('the time was over in `%s`' % command)
 		text, *used = re.split(r'PROCESSORS ([\d.]+) ([\d.]+)\n$', text)
 		return self.running.returncode, text, sum(float(x) for x in used if x)
 
@@ -256,6 +257,7 @@ def main():
 	parser.add_argument('--owner', choices=['root', 'anna'], help='who owns the tree and builds: root, or a user with sudo (default: %s)' % ', '.join('%s in %s' % (o, s) for s, o in SUITES.items()))
 	parser.add_argument('--ccache', metavar='FOLDER', help='keep what is compiled in this folder: shorter, but ccache is on the machine then')
 	parser.add_argument('--limit', metavar='MINUTES', type=float, default=180, help='longest time of all (default: %(default)g); what is not done then has failed')
+	parser.add_argument('--spare', action='store_true', help='what --limit leaves undone is skipped')
 	options = parser.parse_args()
 	for suite in options.suite:
 		if suite not in SUITES and suite not in WARNING: parser.error("no release '%s'; there are %s" % (suite, ', '.join([*SUITES, *WARNING])))
@@ -266,7 +268,7 @@ def main():
 		mayMakeRoots()
 		commands, script = readme((TREE / 'README.md').read_text())
 		if git('-C', str(TREE), 'status', '--porcelain', '--untracked-files=no').stdout: say('the tree has changes that are not committed and so not in the clones')
-		roots = [Root(suite, options.owner or SUITES.get(suite, 'root'), options.ccache, start + 60 * options.limit) for suite in suites]
+		roots = [Root(suite, options.owner or SUITES.get(suite, 'root'), options.ccache, start + 60 * options.limit, Skipped if options.spare else Broken) for suite in suites]
 		with contexts(roots), concurrent.futures.ThreadPoolExecutor(len(roots)) as pool:
 			try:
 				problems = list(pool.map(attempt, [(visit, root, commands, script) for root in roots]))

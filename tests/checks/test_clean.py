@@ -64,10 +64,26 @@ def test_continuousIntegrationAddsBoth(tmp_path, tests, roots, line, status):
 	run = tmp_path / 'tests' / 'run'
 	run.write_text('#!/bin/sh\nif [ "$1" = clean ]; then echo "%s"; exit %d; fi\necho "%s"; exit %d\n' % (*roots, *tests))
 	run.chmod(0o755)
-	done = subprocess.run(['bash', str(tmp_path / '.ci' / 'run')], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60, env=dict(os.environ, MCA_BARE_MACHINES='1'))
+	done = subprocess.run(['bash', str(tmp_path / '.ci' / 'run')], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60)
 	lines = done.stdout.splitlines()
 	assert lines[-1] == line and done.returncode == status, done.stdout
 	assert sum(bool(re.match(r'\d+ passed, \d+ failed', x)) for x in lines) == 1, done.stdout
+
+
+@pytest.mark.parametrize('bare, calls', [('0', ['']), ('1', ['', 'clean --limit 60']), (None, ['', 'clean (bookworm|trixie) --limit 16 --spare'])])
+def test_whatContinuousIntegrationCalls(tmp_path, bare, calls):
+	(tmp_path / '.ci').mkdir()
+	(tmp_path / 'tests').mkdir()
+	shutil.copy(ROOT / '.ci' / 'run', tmp_path / '.ci')
+	run = tmp_path / 'tests' / 'run'
+	run.write_text('#!/bin/sh\necho "called: $*"\necho "1 passed, 0 failed"\n')
+	run.chmod(0o755)
+	environment = {k: v for k, v in os.environ.items() if k != 'MCA_BARE_MACHINES'}
+	if bare: environment['MCA_BARE_MACHINES'] = bare
+	done = subprocess.run(['bash', str(tmp_path / '.ci' / 'run')], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60, env=environment)
+	said = re.findall('^called: (.*)$', done.stdout, re.M)
+	assert len(said) == len(calls) and all(re.fullmatch(c, s) for c, s in zip(calls, said)), done.stdout
+	assert done.stdout.splitlines()[-1] == '%d passed, 0 failed' % len(calls) and done.returncode == 0
 
 
 @pytest.mark.skipif(os.getuid() != 0, reason='only root can give a tree to somebody else')
