@@ -158,7 +158,7 @@ void McaLaw::stateEnergies(Scene& scene, Real& volumetric, Real& deviatoric, Rea
 		const auto& c = constants[size_t(it - seen.begin())];
 		const auto& l = *m->law;
 		volumetric += mca::volumeEnergy(c, l.cell, m->volumeRatio, m->dissipated);
-		if (l.rule == int(mca::VolumeRule::affine) && l.offset > 0)
+		if (l.rule == int(mca::VolumeRule::affine) && l.factor > 0)
 			volumetric += mca::coldEnergy(c, l.cell, mca::contactRatio(l.contactSum)); // contacts have a volume of their own
 		kinetic += 0.5 * (m->mass * m->vel.squaredNorm() + m->inertia[2] * sqr(m->angVel[2]));
 		centre += 0.5 * m->mass * (meanVelocity(scene, b->id, *m, -0.5).squaredNorm() - m->vel.squaredNorm());

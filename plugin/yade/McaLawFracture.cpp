@@ -31,7 +31,7 @@ void McaLaw::breakLinks()
 	vector<Real> J;
 	for (int i : touched) {
 		const Row& r = rows[size_t(i)];
-		J.push_back(r.l->rule == int(VolumeRule::affine) && r.l->offset > 0 ? r.l->offset * determinantNow(r) + r.l->rest : r.m->volumeRatio);
+		J.push_back(r.l->rule == int(VolumeRule::affine) && r.l->factor > 0 ? r.l->factor * determinantNow(r) + r.l->rest : r.m->volumeRatio);
 	}
 	for (const auto& [i, k] : pairs) {
 		Row& r = rows[size_t(i)];
@@ -68,9 +68,9 @@ void McaLaw::keepVolume(int i, Real J)
 	Row&         r = rows[size_t(i)];
 	McaLawState& l = *r.l;
 	if (l.rule == int(VolumeRule::affine)) {
-		if (l.offset == 0) return;
-		l.offset = mca::affineFactor(J, l.rest, determinantNow(r));
-		if (l.offset == 0) unsettled.emplace_back(i, J > 0 ? J : r.m->volumeRatio);
+		if (l.factor == 0) return;
+		l.factor = mca::affineFactor(J, l.rest, determinantNow(r));
+		if (l.factor == 0) unsettled.emplace_back(i, J > 0 ? J : r.m->volumeRatio);
 		return;
 	}
 	mca::dispatch(VolumeRule(l.rule), [&](auto rule) {
@@ -134,7 +134,7 @@ void McaLaw::settleVolumes(bool account)
 
 void McaLaw::filterVolumes(bool account)
 {
-	const auto exchanges = [](const Row& r) { return mca::exchangesVolume(r.m->plasticStrain, r.l->flags, r.l->offset); };
+	const auto exchanges = [](const Row& r) { return mca::exchangesVolume(r.m->plasticStrain, r.l->flags, r.l->factor); };
 	for (Row& r : rows) {
 		r.curvature = 0;
 		if (!exchanges(r)) continue;
@@ -164,7 +164,7 @@ void McaLaw::filterVolumes(bool account)
 				+ mca::deviatorEnergy(r.material->G, r.d, pairs, now, r.m->stressZZ, r.l->invN) * (1. - ratio);
 		}
 		r.m->volumeRatio = J;
-		r.l->offset *= ratio;
+		r.l->factor *= ratio;
 		for (const Side& s : r.link)
 			s.p->s[s.side] *= ratio, s.p->tau[s.side] *= ratio;
 	}

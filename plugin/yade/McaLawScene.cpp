@@ -109,7 +109,7 @@ void McaLaw::takeIn(Scene* scene)
 		if (!fresh && !sameLinks(l, S.flags[i], partner)) relinked.push_back(id);
 		l.flags = S.flags[i], l.partner = partner;
 		if (!fresh) continue;
-		l.cell = S.cell[i], l.invN = S.invN[i], l.rest = S.rest[i], l.offset = S.factor[i], l.rule = int(o.volumeRule), l.diameter = r.d;
+		l.cell = S.cell[i], l.invN = S.invN[i], l.rest = S.rest[i], l.factor = S.factor[i], l.rule = int(o.volumeRule), l.diameter = r.d;
 		r.m->volumeRatio = S.J[i], r.m->pressure = S.P[i];
 	}
 	McaPhys::linking = true;
@@ -199,7 +199,7 @@ void McaLaw::pairConstants(const Row& r, const Side& s) const
 	const Row &a = s.side ? rows[size_t(s.other)] : r, &b = s.side ? r : rows[size_t(s.other)];
 	if (p.revision == revision && p.madeOf[0] == a.mat && p.madeOf[1] == b.mat) return;
 	p.revision = revision, p.madeOf[0] = a.mat, p.madeOf[1] = b.mat;
-	p.twoG       = mca::seriesTwoG(a.material->G, b.material->G, p.share);
+	p.twoG       = mca::seriesTwoG(a.material->G, b.material->G, p.arm);
 	p.friction   = std::min(a.material->friction, b.material->friction);
 	const auto v = mca::viscosityOf(*a.material, *b.material);
 	p.viscLinear = v.linear, p.viscQuadratic = v.quadratic;
@@ -250,7 +250,7 @@ void McaLaw::keepVolumes(Scene* scene)
 		const int i = size_t(id) < place.size() ? place[size_t(id)] : -1;
 		if (i < 0) continue;
 		auto&     l = *rows[size_t(i)].l;
-		if (l.rule == int(mca::VolumeRule::affine) && l.offset == 0) l.offset = 1;
+		if (l.rule == int(mca::VolumeRule::affine) && l.factor == 0) l.factor = 1;
 		keepVolume(i, rows[size_t(i)].m->volumeRatio);
 	}
 	relinked.clear();

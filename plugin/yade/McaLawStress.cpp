@@ -56,14 +56,14 @@ template <mca::EosKind law> void McaLaw::volumeBy(Row& r, bool withContacts)
 	mca::PressureState now  = before;
 	byRule(l.rule, [&](auto rule) {
 		if constexpr (rule.value == VolumeRule::affine) {
-			J   = mca::affineRatio(c, F, l.offset, l.rest, contactSum);
-			now = step(l.offset > 0);
-			const auto push = mca::affinePush(c, F, l.offset, now.P, l.cell);
+			J   = mca::affineRatio(c, F, l.factor, l.rest, contactSum);
+			now = step(l.factor > 0);
+			const auto push = mca::affinePush(c, F, l.factor, now.P, l.cell);
 			l.txx = push.xx, l.txy = push.xy, l.tyx = push.yx, l.tyy = push.yy;
-			r.stiff = mca::affineStiffness(c, J, F, directions, l.offset, nearest2);
+			r.stiff = mca::affineStiffness(c, J, F, directions, l.factor, nearest2);
 			if (!withContacts) return;
 			const Real Jc = mca::contactRatio(contactSum); // contacts have a volume of their own
-			l.share       = mca::pressureShare<mca::ofContacts(rule.value)>(mca::pressure<law>(c.eos, Jc - 1.), Jc, l.cell * (1. / nLinks));
+			l.pressureShare       = mca::pressureShare<mca::ofContacts(rule.value)>(mca::pressure<law>(c.eos, Jc - 1.), Jc, l.cell * (1. / nLinks));
 			r.stiff       = std::max(r.stiff, mca::stiffness(c, Jc));
 		} else {
 			Real sum = 0;
@@ -73,7 +73,7 @@ template <mca::EosKind law> void McaLaw::volumeBy(Row& r, bool withContacts)
 						* mca::volumeTerm<rule.value>(r.link[k].p->d, square(vectorTo(*r.state, *rows[size_t(r.link[k].other)].state)));
 			J       = mca::volumeRatio<rule.value>((sum + contactSum - l.rest) * l.invN);
 			now     = step(true);
-			l.share = mca::pressureShare<rule.value>(now.P, J, l.cell * l.invN);
+			l.pressureShare = mca::pressureShare<rule.value>(now.P, J, l.cell * l.invN);
 			r.stiff = mca::stiffness(c, J);
 		}
 	});
@@ -163,7 +163,7 @@ void McaLaw::contactFriction(Row& r, const Side& s, Pair<Real> before, Real scal
 	const Real  r2    = square(vectorTo(*r.state, *o.state));
 	const auto  press = [&](const McaLawState& l, int side) {
                 return p.pushes(side, r2)
-			 ? l.share * byRule(l.rule, [&](auto rule) { return mca::pressureShape<mca::ofContacts(rule.value)>(p.rest[side], 1. / r2); })
+			 ? l.pressureShare * byRule(l.rule, [&](auto rule) { return mca::pressureShape<mca::ofContacts(rule.value)>(p.rest[side], 1. / r2); })
 			 : 0.;
 	};
 	const mca::ContactSide side {

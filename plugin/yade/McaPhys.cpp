@@ -120,7 +120,7 @@ void Ip2_McaMat_McaMat_McaPhys::go(const shared_ptr<Material>& m1, const shared_
 	}
 	const Real da = 2. * sa->radius, db = 2. * sb->radius;
 	p->d     = 0.5 * (da + db);
-	p->share = da / (da + db);
+	p->arm = da / (da + db);
 	const auto *la = lawState(A), *lb = lawState(B);
 	if (!la || !lb || McaPhys::linking || !McaPhys::mayTouch(A, *la, B, *lb)) return; // McaLaw takes it from here, and gives the pair its constants
 	checkFound(now, A, B, p->d);
@@ -197,12 +197,12 @@ bool Law2_ScGeom_McaPhys_Mca::go(shared_ptr<IGeom>& geom, shared_ptr<IPhys>& phy
 	mca::Vec<Real>        f = mca::dispatch(VolumeRule(a.rule), [&](auto rule) {
                 const auto shape = [&](Real d) { return mca::pressureShape<mca::ofContacts(rule.value)>(d, inv); };
                 if (!p.linked) {
-                        const Real press = (p.pushes(0, r2) ? a.share * shape(p.rest[0]) : 0.) + (p.pushes(1, r2) ? b.share * shape(p.rest[1]) : 0.);
+                        const Real press = (p.pushes(0, r2) ? a.pressureShare * shape(p.rest[0]) : 0.) + (p.pushes(1, r2) ? b.pressureShare * shape(p.rest[1]) : 0.);
                         return mca::contactForce(r, both, inv, q, press);
                 }
                 mca::Vec<Real> push; // of the pressures, to the first body its negative
                 if (rule.value == VolumeRule::affine) push = times(mca::Tensor<Real> { a.txx + b.txx, a.txy + b.txy, a.tyx + b.tyx, a.tyy + b.tyy }, p.slot);
-                else push = r * (w * (a.share + b.share) * shape(p.d));
+                else push = r * (w * (a.pressureShare + b.pressureShare) * shape(p.d));
                 return mca::linkForce(r, both.normal * inv + q, both.shear * inv, push);
         });
 	p.force       = Vector3r(f.x, f.y, 0);

@@ -43,7 +43,7 @@ public:
 		((Vector2r, tau, Vector2r::Zero(), Attr::readonly, "J times shear stress of each side [Pa]"))
 		((Vector2r, rest, Vector2r::Zero(), Attr::readonly, "contact: rest distance of each side [m]"))
 		((Real, d, 0, Attr::readonly, "mean diameter [m]"))
-		((Real, share, 0.5, Attr::readonly, "arm of the first body over the distance [-]"))
+		((Real, arm, 0.5, Attr::readonly, "arm of the first body over the distance [-]"))
 		((Real, twoG, 0, Attr::readonly, "pair shear stiffness 2G, in series [Pa]"))
 		((Real, friction, 0, Attr::readonly, "Coulomb coefficient [-], the smaller of both"))
 		((Real, viscLinear, 0, Attr::readonly, "rho c1 c, the smaller of both [Pa s/m]"))
