@@ -136,8 +136,8 @@ def hugoniot(m, up):
 @pytest.mark.parametrize('road', ['engine', 'grid'])
 def test_shockOfThePolynomial(plugin, road, name):
 	"""A piston of 1000 m/s into material without strength: front and pressure behind it, away from both ends."""
-	from yade_mca.tasks.automata_shocks import drive, between, crossing
-	from yade_mca.tasks.grid_shocks import LENGTH, middle, tube
+	from yade_mca.tasks.verify.automata_shocks import drive, between, crossing
+	from yade_mca.tasks.verify.grid_shocks import LENGTH, middle, tube
 	up = 1000.
 	m = materials.get(name, eos='polynomial', yieldModel='perfect', yieldStress=1e6, shearModulus=1e9, viscosityLinear=1.)
 	speed, P = hugoniot(m, up)

@@ -299,7 +299,7 @@ def test_optionsReachTheScene(plugin):
 
 	from yade import O
 
-	from yade_mca.tasks import penetration_options as options
+	from yade_mca.tasks.penetration import options
 	args = Namespace(mode='mca', spacing=2., thickness=16., fracture_strain=0.7, eos='mieGruneisen', friction=0.3, viscosity=2., volume_rule='inversePower', dt_factor=0.2, seed=7,
 	                 speed=1000., spread=0.1, yield_model='linearHardening', obliquity=30., angle=60.)
 	options.fill(args)
@@ -312,7 +312,7 @@ def test_optionsReachTheScene(plugin):
 
 
 def test_referencesOfThePackageAreThoseOfTheTests():
-	from yade_mca.tasks import penetration_report
+	from yade_mca.tasks.penetration import report as penetration_report
 	for name in ('penetration_reference.csv', 'penetration_peers.csv'):
 		assert penetration_report.table(name) == table(name)
 

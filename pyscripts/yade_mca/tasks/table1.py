@@ -8,7 +8,8 @@ import subprocess
 import sys
 import time
 
-from . import environment, penetration_options as options, penetration_report as results, registry
+from . import environment, registry
+from .penetration import options, report as results
 from .attempts import Attempts, inMemory
 from .cli import positive
 from .registry import UsageError
