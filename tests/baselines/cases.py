@@ -23,7 +23,7 @@ def penetration():
 
 def shock():
 	"""Piston into copper, U = 0.1 c0, rows along the motion: shock speed [m/s] and pressure [Pa] over the exact ones."""
-	from yade_mca import exact
+	from yade_mca import exact, scenes
 	from yade_mca.tasks.verify import automata_shocks as shocks
 	m = shocks.material('OFHC_Cu', eos='shockAdiabat', yieldModel='perfect', viscosity=shocks.SMOOTH)
 	m.yieldStress = 0.01 * m.density * m.bulkSoundSpeed**2
@@ -31,7 +31,7 @@ def shock():
 	ref = exact.piston(m.density, m.bulkSoundSpeed, m.hugoniotSlope, m.shearModulus, m.yieldStress, up)
 	bar = shocks.drive(m, up, 0., 'affine', columns, 8)
 	speed, front = shocks.fronts(bar, 'bar', ref, up, columns * shocks.D, np.linspace(0.4, 0.75, 6))[1::2]
-	x, P = bar.profile('bar', 'pressure')
+	x, P = scenes.profile(bar, 'bar', 'pressure')
 	return dict(speed=speed / ref['D'], pressure=shocks.between(x, P, x[0], front) / ref['P'])
 
 

@@ -12,7 +12,6 @@ from . import environment, registry
 from .penetration import options, report as results
 from .attempts import Attempts, inMemory
 from .cli import positive
-from .registry import UsageError
 
 SUMMARY = registry.SUMMARIES['table1']
 THICKNESSES = (15., 20., 25., 30., 35., 40.)

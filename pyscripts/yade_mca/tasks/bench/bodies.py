@@ -9,10 +9,11 @@ import __main__
 import numpy as np
 
 from ... import scenes
+from ..._yade import scene as omega
 from ..._yade import yadeClass
+from ..trials import PITCH, elastic, material
 from .meter import Meter
 from .waves import energyError
-from ..interface_scene import PITCH, steel
 
 TAYLOR = dict(length=25.4e-3, diameter=7.62e-3, speed=190., until=70e-6)  #: bar of copper [m], [m/s], [s]
 THICKNESS, COARSE = 25e-3, 25e-3 / 12  #: of the plate; spacing whose multiples the widths are, so that all spacings fit [m]
@@ -26,7 +27,6 @@ def engineOptions(job):
 
 def taylorBar(job):
 	"""Copper bar on a rough rigid anvil, n automata across: final length and width of the foot over the original ones."""
-	from ..automata_scene import material
 	begin, d = time.perf_counter(), TAYLOR['diameter'] / job['n']
 	m = material('OFHC_Cu', eos='shockAdiabat', yieldModel='johnsonCook', fractureStrain=1.)
 	s = scenes.taylorBar(m, TAYLOR['length'], TAYLOR['diameter'], d, TAYLOR['speed'], anvil='rough', engineOptions=dict(engineOptions(job), dtFactor=job['factor']))
@@ -50,9 +50,10 @@ def plateWave(job):
 	"""
 	begin, d, coupled = time.perf_counter(), THICKNESS / job['n'], job['solver'] == 'coupled'
 	width = fitted(1e-3 * job['width'])
-	s = scenes.tiedPlate(steel(), THICKNESS, d, fitted(80e-3) if coupled else width, width, 'coupled' if coupled else 'mca', 'fixed', dtFactor=job['factor'], engineOptions=engineOptions(job))
+	automataWidth, mode = (fitted(80e-3), 'coupled') if coupled else (width, 'mca')
+	s = scenes.tiedPlate(elastic(), THICKNESS, d, automataWidth, width, mode, 'fixed', dtFactor=job['factor'], engineOptions=engineOptions(job))
 	p, mass = s.packings['plate'].positions, s.packings['plate'].weight
-	o = scenes.omega()
+	o = omega()
 	r2 = (p**2).sum(axis=1)
 	for i, v in zip(s.ids['plate'].tolist(), np.where(r2 < (3 * SPOT)**2, np.exp(-r2 / SPOT**2), 0.).tolist()):
 		if v and not o.bodies[i].state.blockedDOFs.startswith('xy'): o.bodies[i].state.vel = (0, -v, 0)

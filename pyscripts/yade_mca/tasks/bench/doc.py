@@ -4,11 +4,11 @@ import json
 import os
 import re
 
+from ..penetration.doc import listTable, number
+from ..report import writeAtomically
 from . import results
 from .plan import ERRORS, RESOLUTION, variants
 from .plots import PHASES, TITLES, shown
-from ..penetration.doc import listTable, number
-from ..report import writeAtomically
 
 KINDS = {'elastic': 'elastic', 'plastic': 'plastic', 'fracture': 'plastic, links break', 'random': 'plastic, bodies in random order'}
 

@@ -19,11 +19,11 @@ A record holds the job (case, solver, n, rule, factor, sleeping, account, thread
 import json
 import os
 
-from . import google, plan, process, results
 from .. import environment, registry
 from ..attempts import Attempts
 from ..registry import UsageError
 from ..report import Report, jsonable, writeAtomically
+from . import google, plan, process, results
 
 SUMMARY = registry.SUMMARIES['bench']
 KERNELS = 'kernels'

@@ -9,9 +9,9 @@ from html import escape
 from pathlib import Path
 
 from .. import environment, svg
+from ..report import writeAtomically
 from . import options
 from . import report as results
-from ..report import writeAtomically
 
 STYLE = Path(__file__).with_name('page.css')
 #: quantity -> how it is called on the page; others of results.DEFINITIONS that the record holds are shown by their own name

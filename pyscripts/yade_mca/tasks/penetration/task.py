@@ -8,11 +8,11 @@ import os
 import sys
 import time
 
-from . import options
-from . import report as results
 from .. import registry
 from ..cli import positive, writable
 from ..registry import UsageError
+from . import options
+from . import report as results
 
 SUMMARY = registry.SUMMARIES['penetration']
 CHECKPOINT = 'penetration.checkpoint'

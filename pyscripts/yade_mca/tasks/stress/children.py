@@ -8,8 +8,8 @@ import sys
 import time
 from dataclasses import asdict
 
-from . import impact, lattice, limit, long, material, random, step
 from ..attempts import inMemory
+from . import impact, lattice, limit, long, material, random, step
 from .judge import FAILED, Outcome, judge
 
 GROUPS = (step, limit, impact, material, lattice, long, random)
@@ -24,7 +24,7 @@ def allCases(quick, seed):
 def afterError():
 	"""What is left of the scene after a refusal: are all numbers finite, and can it be saved? None without engines."""
 	from ..._yade import scene
-	from .scene import FIELDS, VIEWS
+	from .watch import FIELDS, VIEWS
 	import numpy as np
 	o = scene()
 	if not o.engines:

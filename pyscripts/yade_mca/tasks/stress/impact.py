@@ -5,8 +5,9 @@ import math
 from ... import scenes
 from ..._yade import scene as omega
 from ...packings import Rectangle, addBodies, hexagonal
+from ..trials import D, material
 from .judge import StressCase
-from .scene import D, Trial, material, transit, twoBlocks
+from .watch import Watch, transit, twoBlocks
 
 SPEEDS = (10, 30, 100, 300, 1000, 1520, 2000, 3000, 4000, 5000, 6000)
 QUICK = (10, 300, 1520, 4000, 6000)
@@ -28,19 +29,19 @@ def automata(pair, speed, **options):
 	return t.run(until=transit(a, b)).measures()
 
 
-def coupledTrial(body, flyer, plate, speed, slant=0., thickness=16, dtFactor=0.4, **options):
-	"""Trial: the packing `body` falls on a plate whose middle 24 spacings are automata and whose rest is grid."""
+def watchedPlate(body, flyer, plate, speed, slant=0., thickness=16, dtFactor=0.4, **options):
+	"""Watch: the packing `body` falls on a plate whose middle 24 spacings are automata and whose rest is grid."""
 	omega().reset()
 	s = scenes.tiedPlate(plate, thickness * D, D, automataWidth=24 * D, plateWidth=64 * D, ends='viscous', dtFactor=dtFactor, engineOptions=dict(dict(account=True), **options))
 	middle = 0.5 * (body.positions[:, 0].max() + body.positions[:, 0].min())
 	v = (speed * math.sin(slant), -speed * math.cos(slant))
 	addBodies(body.translated((-middle, D - body.positions[:, 1].min())), flyer, velocity=v, mask=scenes.ROD)
-	return Trial(s.automata, s.grid, s.couplers, [(k, plate) for k in s.blocks.values()])
+	return Watch(s, [(k, plate) for k in s.blocks.values()])
 
 
 def coupled(pair, speed):
 	a, b = PAIRS[pair]()
-	return coupledTrial(hexagonal(D, Rectangle((0, 0), (10 * D, 14 * D))), a, b, float(speed)).run(until=transit(a, b, times=3.)).measures()
+	return watchedPlate(hexagonal(D, Rectangle((0, 0), (10 * D, 14 * D))), a, b, float(speed)).run(until=transit(a, b, times=3.)).measures()
 
 
 def cases(quick, seed):

@@ -4,9 +4,10 @@ import math
 
 import numpy as np
 
-from ..interface_scene import Halves
+from .. import trials
+from ..trials import D, PITCH, elastic, material
 from .judge import REFUSED, StressCase
-from .scene import D, PITCH, Trial, elastic, material, transit, twoBlocks
+from .watch import Watch, transit, twoBlocks
 
 NOISE = (0.01, 0.02, 0.05, 0.08, 0.1)
 MORE = (0.12, 0.15, 0.2, 0.3)  #: here neighbours can be taken for what they are not: refused, or it runs
@@ -23,9 +24,10 @@ def noisy(noise, seed, angle=0.):
 def interface(edge, speed, quick, plastic=True):
 	"""Automata on the left fly into the grid on the right, to which they are tied."""
 	m = material('4340') if plastic else elastic()
-	s = Halves(m, 12 * PITCH, 18, HEIGHT, edge, velocity=lambda x, y: (speed * (np.cos(0.5 * math.pi * x / (12 * PITCH * D)) if not plastic else 1.) * (x < 0), 0.2 * speed * np.sin(300 * y)), account=True)
-	t = Trial(s.automata, s.grid, [s.coupler], [(0, m)])
-	return t.run(until=transit(m, times=1. if quick else 3.)).measures()
+	along = lambda x: 1. if plastic else np.cos(0.5 * math.pi * x / (12 * PITCH * D))
+	velocity = lambda x, y: (speed * along(x) * (x < 0), 0.2 * speed * np.sin(300 * y))
+	s = trials.halves(m, 12 * PITCH, 18, HEIGHT, edge, velocity=velocity, account=True)
+	return Watch(s, [(0, m)]).run(until=transit(m, times=1. if quick else 3.)).measures()
 
 
 def cases(quick, seed):

@@ -9,12 +9,12 @@ import math
 import numpy as np
 from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs
 
-from ... import packings
 from ..._yade import scene as omega
 from ...packings import Rectangle, addBodies, disc, hexagonal
-from ..interface_scene import PITCH, Halves
+from .. import trials
+from ..trials import D, elastic
 from .judge import StressCase
-from .scene import D, automataTrial, elastic, gridTrial, jittered
+from .watch import jittered, watchedAutomata
 
 TINY = 1e-11  #: step of the products [s]
 
@@ -39,7 +39,7 @@ def automataLimit(packing, mat, stretch=(1., 1.), **options):
 	def accelerations(w):
 		"""After one step with the velocities w (3n: x, y, R spin)."""
 		nonlocal limit
-		t = automataTrial(contacts=False, adaptive=False, account=False, sleeping=False, **options)
+		t = watchedAutomata(contacts=False, adaptive=False, account=False, sleeping=False, **options)
 		o = omega()
 		o.dt = dt
 		first = np.concatenate((offset / dt, np.zeros((n, 1))), axis=1) if offset.any() else w.reshape(n, 3)
@@ -82,13 +82,10 @@ def gridLimit(shape, mat, distortion=0., stretch=(1., 1.), **options):
 
 	def accelerations(w):
 		nonlocal limit
-		from ..._yade import yadeClass
-		o = omega()
-		o.reset()
-		g = yadeClass('McaGridEngine')(adaptive=False, account=False, sleeping=False)
+		o, g = omega(), trials.grid(adaptive=False, account=False, sleeping=False).grid
 		g.addBlock(mat, gx + r[0], gy + r[1], **options)
 		g.setVelocity(0, w.reshape(ny + 1, nx + 1, 2))
-		o.engines, o.dt = [g], TINY
+		o.dt = TINY
 		limit = g.criticalTimeStep
 		o.step()
 		before = np.stack((g.view(0, 'vx'), g.view(0, 'vy')), axis=-1)

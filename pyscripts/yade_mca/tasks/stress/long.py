@@ -12,10 +12,10 @@ import numpy as np
 from ... import scenes
 from ..._yade import scene as omega
 from ...packings import addBodies, disc, hexagonal
-from ..automata_scene import Bar
-from ..interface_scene import Halves
+from .. import trials
+from ..trials import D, PITCH, elastic, material
 from .judge import LEAPFROG, StressCase
-from .scene import D, PITCH, Trial, advance, automataTrial, elastic, gridTrial, jittered, material
+from .watch import Watch, advance, jittered, watchedAutomata, watchedGrid
 
 DRIFT = 1e-4  #: largest change of the mean energy over a long run [-]
 SINGLE = 0.1  #: bound on single samples of the energy sum in those runs: leapfrog's own error of the waves near the limit of the step
@@ -58,7 +58,7 @@ def drift(t, steps, factor):
 
 
 def freeAutomata(factor, steps, rule='affine', **changes):
-	t = automataTrial(contacts=False, dtFactor=factor, volumeRule=rule)
+	t = watchedAutomata(contacts=False, dtFactor=factor, volumeRule=rule)
 	m = elastic(**dict(DAMPED, **changes))
 	p = hexagonal(D, disc((0, 0), 7.4 * D), rim='full')
 	x, y = p.positions.T
@@ -70,13 +70,18 @@ def freeAutomata(factor, steps, rule='affine', **changes):
 def freeGrid(factor, steps):
 	m = elastic()
 	r = np.random.default_rng(2)
-	return drift(gridTrial([(m, 14, 14)], lambda k, x, y: 1e-5 * m.cS * np.array((np.cos(300 * x) * np.sin(200 * y), np.sin(250 * x + 200 * y))) + 1e-7 * m.cS * r.standard_normal((2, *x.shape)), dtFactor=factor, hourglass=0.), steps, factor)
+
+	def velocity(k, x, y):
+		return 1e-5 * m.cS * np.array((np.cos(300 * x) * np.sin(200 * y), np.sin(250 * x + 200 * y))) + 1e-7 * m.cS * r.standard_normal((2, *x.shape))
+
+	return drift(watchedGrid([(m, 14, 14)], velocity, dtFactor=factor, hourglass=0.), steps, factor)
 
 
 def freeCoupled(factor, steps):
 	m = elastic(**DAMPED)
-	s = Halves(m, 10 * PITCH, 8, 10, velocity=lambda x, y: (1e-4 * m.cS * np.sin(180 * x), 1e-4 * m.cS * np.cos(300 * y)), rotate=0.4, factor=factor, account=True)
-	return drift(Trial(s.automata, s.grid, [s.coupler], [(0, m)]), steps, factor)
+	velocity = lambda x, y: (1e-4 * m.cS * np.sin(180 * x), 1e-4 * m.cS * np.cos(300 * y))
+	s = trials.halves(m, 10 * PITCH, 8, 10, velocity=velocity, rotate=0.4, factor=factor, account=True)
+	return drift(Watch(s, [(0, m)]), steps, factor)
 
 
 def shortestWave(p, x, waves):
@@ -97,17 +102,17 @@ def automataNoise(angle, **options):
 	"""A piston drives a shock into a bar of noisy packing, in uniaxial strain."""
 	viscosity = options.pop('viscosity', {})
 	m = metal(**viscosity)
-	bar = Bar(D, angle, 24, account=True, contacts=False, **options)
-	p = bar.body('bar', m, 0., 120 * D)
+	bar = trials.bar(m, 120 * D, angle=angle, rows=24, account=True, contacts=False, **options)
+	p = bar.packings['bar']
 	noisy = jittered(p, NOISE, 4).positions
 	for i, (x, y) in zip(bar.ids['bar'].tolist(), noisy.tolist()):
-		bar.O.bodies[i].state.pos = (x, y, 0)
-	bar.drive('bar', SPEED * m.bulkSoundSpeed)
-	t = Trial(bar.engine)
+		omega().bodies[i].state.pos = (x, y, 0)
+	scenes.driveEnd(bar, 'bar', SPEED * m.bulkSoundSpeed)
+	t = Watch(bar)
 	speed = m.bulkSoundSpeed * (1 + m.hugoniotSlope * SPEED)
 	t.run(until=80 * D / speed)
 	n1, n2 = p.lattice[:, 0] - p.lattice[:, 1] // 2, p.lattice[:, 1]
-	x, P = bar.field('x', 'bar'), bar.field('pressure', 'bar')
+	x, P = bar.field('bar', 'x'), bar.field('bar', 'pressure')
 	front = 80 * D
 	keep = scenes.middle(p) & (x > 0.35 * front) & (x < 0.8 * front)
 	waves = [(-1.)**n for n in (n1, n2, n1 + n2)] + [np.exp(2j * math.pi * (n1 - n2) / 3)]
@@ -116,9 +121,8 @@ def automataNoise(angle, **options):
 
 def gridNoise(viscosity=None, **block):
 	m = metal(**(viscosity or {}))
-	from ..._yade import yadeClass
-	omega().reset()
-	g = yadeClass('McaGridEngine')()
+	s = trials.grid()
+	g = s.grid
 	x, y = np.meshgrid(np.arange(121) * D, np.arange(17) * D)
 	r = np.random.default_rng(4).uniform(-NOISE, NOISE, (2, 17, 121)) * D
 	r[:, :, (0, -1)] = 0
@@ -127,8 +131,7 @@ def gridNoise(viscosity=None, **block):
 	g.symmetry(0, 'bottom')
 	g.symmetry(0, 'top')
 	g.prescribe(0, 'left', x=SPEED * m.bulkSoundSpeed)
-	omega().engines = [g]
-	t = Trial(grid=g, grids=[(0, m)])
+	t = Watch(s, [(0, m)])
 	speed = m.bulkSoundSpeed * (1 + m.hugoniotSlope * SPEED)
 	t.run(until=80 * D / speed)
 	P, xs = g.view(0, 'pressure'), g.view(0, 'x')

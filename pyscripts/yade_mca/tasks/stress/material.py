@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 
+from ..trials import material
 from .judge import REFUSED, StressCase, energyBound
-from .scene import gridTrial, material, transit, twoBlocks
+from .watch import transit, twoBlocks, watchedGrid
 
 SLOPES = (0., 0.5, 1., 1.5, 2., 2.5, 3.)
 POISSON = (0., 0.1, 0.2, 0.3, 0.4, 0.45, 0.49, 0.5)
@@ -23,7 +24,7 @@ def automata(a, b=None, speed=SPEED, **options):
 
 def grid(a, b=None, speed=SPEED):
 	b = b or a
-	t = gridTrial([(a, 10, 14), (b, 14, 14)], lambda k, x, y: (np.where(k == 0, speed, 0.) + 0 * x, 0 * y))
+	t = watchedGrid([(a, 10, 14), (b, 14, 14)], lambda k, x, y: (np.where(k == 0, speed, 0.) + 0 * x, 0 * y))
 	return t.run(until=transit(a, b, length=20e-3, times=1.5)).measures()
 
 

@@ -8,8 +8,9 @@ import numpy as np
 
 from ... import materials, packings
 from ...outlines import Polygon
+from ..trials import D, material
 from .judge import StressCase
-from .scene import D, automataTrial, jittered, material, transit
+from .watch import jittered, transit, watchedAutomata
 
 COUNT = 50
 BOUND = 0.05  #: on the energy sum: steps up to 0.9 of the limit, speeds up to 6 km/s
@@ -50,15 +51,15 @@ def body(p, seed):
 
 
 def build(d, seed=1):
-	"""(Trial, time to run [s]) of a description."""
+	"""(Watch, time to run [s]) of a description."""
 	a, b = matter(d['flyer']), matter(d['target'])
 	slant = math.radians(d['slant'])
 	flyer = body(d['flyer'], seed)
 	if d['coupled']:
-		from .impact import coupledTrial
-		t = coupledTrial(flyer, a, b, d['speed'], slant, thickness=min(d['target']['size']), dtFactor=d['dtFactor'], volumeRule=d['rule'])
+		from .impact import watchedPlate
+		t = watchedPlate(flyer, a, b, d['speed'], slant, thickness=min(d['target']['size']), dtFactor=d['dtFactor'], volumeRule=d['rule'])
 	else:
-		t = automataTrial(volumeRule=d['rule'], dtFactor=d['dtFactor'])
+		t = watchedAutomata(volumeRule=d['rule'], dtFactor=d['dtFactor'])
 		w, h = (n * D for n in d['target']['size'])
 		target = jittered(packings.hexagonal(D, packings.Rectangle((0, 0), (w, h)), angle=math.radians(d['target']['angle'])), d['target']['noise'], seed + 1)
 		middle = 0.5 * (flyer.positions[:, 1].max() + flyer.positions[:, 1].min())

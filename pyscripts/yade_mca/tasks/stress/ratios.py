@@ -11,7 +11,7 @@ import numpy as np
 from ... import materials, packings
 from ..._yade import scene as omega
 from ..._yade import yadeClass
-from .scene import advance
+from .watch import advance
 
 D = 1e-3
 OVERHEAD = 0.02  #: largest cost of a feature that is present but has nothing to do, over the scene without it

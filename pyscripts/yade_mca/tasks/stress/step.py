@@ -6,8 +6,9 @@ import numpy as np
 
 from ..._yade import scene as omega
 from ...packings import Rectangle, addBodies, hexagonal
+from ..trials import D, elastic, material
 from .judge import REFUSED, StressCase, energyBound
-from .scene import D, automataTrial, elastic, gridTrial, material, transit, twoBlocks
+from .watch import transit, twoBlocks, watchedAutomata, watchedGrid
 
 BELOW = (0.05, 0.2, 0.5, 0.8, 0.95, 0.999)
 ABOVE = (1.001, 1.1, 2., 100., math.inf, math.nan, 0.)  # YADE takes a negative O.dt as a wish for a time stepper
@@ -24,14 +25,14 @@ def motion(x, y, speed=1., noise=1e-3):
 
 
 def vibratingAutomata(mat, angle=0.2, **options):
-	t = automataTrial(contacts=False, adaptive=False, **options)
+	t = watchedAutomata(contacts=False, adaptive=False, **options)
 	p = hexagonal(D, Rectangle((0, 0), (SIZE * D, SIZE * D)), angle=angle, rim='full')
 	addBodies(p, mat, velocity=np.stack(motion(*p.positions.T), axis=1))
 	return t
 
 
 def vibratingGrid(mat, **options):
-	return gridTrial([(mat, SIZE, SIZE)], lambda k, x, y: motion(x, y), adaptive=False, **options)
+	return watchedGrid([(mat, SIZE, SIZE)], lambda k, x, y: motion(x, y), adaptive=False, **options)
 
 
 def fixedStep(make, factor, steps=2000):
@@ -55,7 +56,7 @@ def impact(factor, quick):
 
 def gridImpact(factor, quick):
 	m = material('4340')
-	t = gridTrial([(m, 12, 20), (m, 24, 20)], lambda k, x, y: (np.where(k == 0, 1000., 0.) + 0 * x, 0 * y), dtFactor=factor)
+	t = watchedGrid([(m, 12, 20), (m, 24, 20)], lambda k, x, y: (np.where(k == 0, 1000., 0.) + 0 * x, 0 * y), dtFactor=factor)
 	return t.run(until=transit(m, times=1. if quick else 2.)).measures()
 
 

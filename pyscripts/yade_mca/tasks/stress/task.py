@@ -62,7 +62,8 @@ def run(args, report, progress):
 			limit = (o.measures.get('atMost') if 'value' in o.measures else o.energyBound) if held else None
 			report.add(o.name, value, limit=limit, unit=o.outcome if 'unit' not in o.measures else '%s: %s' % (o.outcome, o.measures['unit']), passed=o.outcome != 'failed')
 			bar.update(len(outcomes), **count)
-	report.extra['stress'] = dict(count, seed=args.seed, quick=args.quick, failedCases=[o.name for o in outcomes if o.outcome == 'failed'], outcomes=[children.readable(o) for o in outcomes])
+	report.extra['stress'] = dict(count, seed=args.seed, quick=args.quick, failedCases=[o.name for o in outcomes if o.outcome == 'failed'],
+	                              outcomes=[children.readable(o) for o in outcomes])
 	text = table(outcomes)
 	print(text)
 	print('\nheld %d, refused %d, failed %d' % (count['held'], count['refused'], count['failed']))

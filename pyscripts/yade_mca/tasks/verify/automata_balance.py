@@ -4,10 +4,11 @@ import math
 
 import numpy as np
 
-from ...packings import Rectangle, disc, hexagonal
-from ..automata_scene import AutomataRun, impactBlocks, order, steel
+from ..._yade import scene as omega
+from ...packings import disc, hexagonal
+from .. import trials
+from ..trials import D, elastic, impactBlocks, order
 
-D = 1e-3  #: spacing [m]
 SPIN, VIBRATION = 1e-3, 1e-4  #: speeds in the long run, of the rim and of the random motion, over the shear wave speed [-]
 
 
@@ -16,9 +17,9 @@ def reaction(report, want, quick):
 	for rule in ('affine', 'inversePower', 'meanDistance'):
 		name = 'reaction/' + rule
 		if not want(name): continue
-		run = AutomataRun(volumeRule=rule)
+		run = trials.automata(volumeRule=rule)
 		rng = np.random.default_rng(4)
-		m = steel(yieldModel='perfect', yieldStress=0.5e9, viscosity=(0.25, 1.2), frictionAngle=0.3)
+		m = elastic(poisson=0.3, yieldModel='perfect', yieldStress=0.5e9, viscosity=(0.25, 1.2), frictionAngle=0.3)
 		one = hexagonal(D, disc((0, 0), 0.6 * D), rim='full')
 		ids = []
 		for k in range(400):
@@ -29,8 +30,8 @@ def reaction(report, want, quick):
 		order = np.searchsorted(np.sort(ids), ids)
 		unequal, acted = 0, np.zeros(400, bool)
 		for _ in range(5 if quick else 25):
-			run.steps(1, 1e-8)
-			for f in (run.engine.field(c)[order].reshape(-1, 2) for c in ('fx', 'fy')):
+			trials.steps(run, 1, 1e-8)
+			for f in (run.automata.field(c)[order].reshape(-1, 2) for c in ('fx', 'fy')):
 				unequal += int((f[:, 0] != -f[:, 1]).sum())
 				acted |= f[:, 0] != 0
 		report.add(name + '/unequalForces', unequal, 0, limit=0.)
@@ -42,17 +43,17 @@ def impactBalance(report, want, quick):
 	if not want('impactBalance'): return
 	drift = []
 	for factor in (0.4, 0.2):
-		run = AutomataRun(account=True, dtFactor=factor)
+		run = trials.automata(account=True, dtFactor=factor)
 		ids = impactBlocks()
-		run.steps(1)
-		end = run.engine.energies()
+		trials.steps(run, 1)
+		end = run.automata.energies()
 		start, E = end, end['kineticStart']
-		mass, x, v = run.field('mass'), *(np.stack([run.field(a), run.field(b)]) for a, b in (('x', 'y'), ('vx', 'vy')))
+		mass, x, v = run.automata.field('mass'), *(np.stack([run.automata.field(a), run.automata.field(b)]) for a, b in (('x', 'y'), ('vx', 'vy')))
 		p, L = (mass * np.hypot(*v)).sum(), (mass * np.hypot(*x) * np.hypot(*v)).sum()
 		worst = np.zeros(4)
-		while run.O.time < 1.2e-5:
-			run.steps(20)
-			end = run.engine.energies()
+		while omega().time < 1.2e-5:
+			trials.steps(run, 20)
+			end = run.automata.energies()
 			off = (math.hypot(end['momentumX'] - start['momentumX'], end['momentumY'] - start['momentumY']) / p, abs(end['angularMomentum'] - start['angularMomentum']) / L,
 			       abs(end['bookedError']) / E, abs(end['total'] - E) / E)
 			worst = np.maximum(worst, off)
@@ -64,44 +65,44 @@ def impactBalance(report, want, quick):
 			report.add('impactBalance/energySum', worst[3], 0., limit=1e-3, unit='of the kinetic energy')
 			for what in ('plastic', 'viscous', 'friction', 'fracture'):
 				report.add('impactBalance/share/' + what, end[what] / E, unit='of the kinetic energy')
-			report.add('impactBalance/brokenLinks', run.engine.counters()['brokenLinks'], passed=run.engine.counters()['brokenLinks'] > 10)
+			report.add('impactBalance/brokenLinks', run.automata.counters()['brokenLinks'], passed=run.automata.counters()['brokenLinks'] > 10)
 	report.add('impactBalance/energySumAtHalfTheStep', drift[1], 0., order=order(drift), unit='of the kinetic energy', passed=drift[1] < drift[0])
 
 
 def longRun(report, want, quick):
 	"""A spinning, vibrating elastic disc: total energy and momenta over a million steps."""
 	if not want('longRun'): return
-	run = AutomataRun(contacts=False)
+	run = trials.automata(contacts=False)
 	p = hexagonal(D, disc((0, 0), 3.3 * D), rim='full')
 	rng = np.random.default_rng(2)
-	m = steel()
+	m = elastic(poisson=0.3)
 	spin = SPIN * m.cS / (3 * D)
 	v = spin * np.stack((-p.positions[:, 1], p.positions[:, 0]), axis=1) + VIBRATION * m.cS * rng.standard_normal((len(p), 2))
 	v -= v.mean(axis=0)
 	run.add('body', p, m, velocity=v, angularVelocity=spin)
-	run.steps(1, 0.4 * 0.5 * D / m.cP)
+	trials.steps(run, 1, 0.4 * 0.5 * D / m.cP)
 	n, samples = 100000 if quick else 1000000, 100
-	start = run.engine.energies()
-	scale = math.sqrt(2 * start['kinetic'] * run.field('mass').sum())
+	start = run.automata.energies()
+	scale = math.sqrt(2 * start['kinetic'] * run.automata.field('mass').sum())
 
 	def mean():
 		"""Energy averaged over some oscillations: velocities are half a step behind the positions."""
 		total = []
 		for _ in range(samples):
-			run.steps(37)
-			e = run.engine.energies()
+			trials.steps(run, 37)
+			e = run.automata.energies()
 			total.append(e['kinetic'] + e['volumetric'] + e['deviatoric'])
 		return np.mean(total)
 
 	energy = [mean()]
-	run.steps(n - run.O.iter)
+	trials.steps(run, n - omega().iter)
 	energy.append(mean())
-	end = run.engine.energies()
+	end = run.automata.energies()
 	unit = 'over %g steps' % n
 	report.add('longRun/energyDrift', energy[-1] / energy[0] - 1, 0., limit=1e-4, unit=unit)
 	report.add('longRun/momentum', math.hypot(end['momentumX'] - start['momentumX'], end['momentumY'] - start['momentumY']) / scale, 0., limit=1e-13, unit=unit)
 	report.add('longRun/angularMomentum', end['angularMomentum'] / start['angularMomentum'] - 1, 0., limit=1e-12, unit=unit)
-	report.extra.setdefault('automata', {})['longRunTurns'] = float(abs(run.field('angle')).mean() / (2 * math.pi))
+	report.extra.setdefault('automata', {})['longRunTurns'] = float(abs(run.automata.field('angle')).mean() / (2 * math.pi))
 
 
 CASES = [reaction, impactBalance, longRun]

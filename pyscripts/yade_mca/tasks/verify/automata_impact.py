@@ -5,8 +5,9 @@ import math
 import numpy as np
 
 from ... import scenes
-from ..automata_scene import AutomataRun, Bar, material, order
-from ..grid_scene import GridRun
+from ..._yade import scene as omega
+from .. import trials
+from ..trials import material, order
 
 LENGTH, WIDTH, SPEED, END = 25.4e-3, 7.62e-3, 130., 60e-6  #: of the Taylor bar [m], [m/s]; by END [s] it has come to rest but for vibration
 HEIGHTS = np.array((0.5, 1., 2., 3., 4., 6., 8.)) * 1e-3  #: above the anvil, where widths are compared [m]
@@ -25,33 +26,32 @@ def outline(y, x):
 
 def barOfAutomata(n, material=None, speed=SPEED, end=END):
 	"""Length and widths at the end over those at the start, and the error of the energy sum; n automata across, on a smooth anvil."""
-	from yade import O
-	O.reset()
-	run = AutomataRun(scenes.taylorBar(material or soft(), LENGTH, WIDTH, WIDTH / n, speed, engineOptions=dict(account=True)))
-	p = run.scene.packings['bar']
+	omega().reset()
+	run = scenes.taylorBar(material or soft(), LENGTH, WIDTH, WIDTH / n, speed, engineOptions=dict(account=True))
+	p = run.packings['bar']
 	x0, y0 = abs(p.positions[:, 0]), p.positions[:, 1]
 	rear, side = y0 > y0.max() - 1.2 * p.spacing, x0 > 0.5 * WIDTH - 0.8 * p.spacing
 	length = []
-	while run.O.time < end:
-		run.steps(50)
-		if run.O.time > 0.75 * end: length.append(1 + (run.field('y', 'bar') - y0)[rear].mean() / LENGTH)
-	x, y, e = run.field('x', 'bar'), run.field('y', 'bar'), run.engine.energies()
+	while omega().time < end:
+		trials.steps(run, 50)
+		if omega().time > 0.75 * end: length.append(1 + (run.field('bar', 'y') - y0)[rear].mean() / LENGTH)
+	x, y, e = run.field('bar', 'x'), run.field('bar', 'y'), run.automata.energies()
 	stretch = abs(x[side]) / x0[side]
 	return np.mean(length), outline(y[side], 0.5 * WIDTH * stretch), e['total'] / e['kineticStart'] - 1
 
 
 def barOfCells(n, material=None, speed=SPEED, end=END):
 	"""The same on the Lagrangian grid, half of the bar."""
-	run, h = GridRun(), WIDTH / n
-	run.engine.addRectangle(material or soft(), np.linspace(0, 0.5 * WIDTH, n // 2 + 1), np.linspace(0, LENGTH, round(LENGTH / h) + 1))
-	run.engine.symmetry(0, 'left')
-	run.engine.symmetry(0, 'bottom')
-	run.engine.setVelocity(0, (0., -speed))
+	run, h = trials.grid(), WIDTH / n
+	run.grid.addRectangle(material or soft(), np.linspace(0, 0.5 * WIDTH, n // 2 + 1), np.linspace(0, LENGTH, round(LENGTH / h) + 1))
+	run.grid.symmetry(0, 'left')
+	run.grid.symmetry(0, 'bottom')
+	run.grid.setVelocity(0, (0., -speed))
 	length = []
-	while run.engine.time < end:
-		run.steps(50)
-		if run.engine.time > 0.75 * end: length.append(run.view(0, 'y')[-1].mean() / LENGTH)
-	return np.mean(length), outline(run.view(0, 'y')[:, -1], run.view(0, 'x')[:, -1])
+	while run.grid.time < end:
+		trials.steps(run, 50)
+		if run.grid.time > 0.75 * end: length.append(run.grid.view(0, 'y')[-1].mean() / LENGTH)
+	return np.mean(length), outline(run.grid.view(0, 'y')[:, -1], run.grid.view(0, 'x')[:, -1])
 
 
 def taylor(report, want, quick):
@@ -85,18 +85,17 @@ def spallBar(flow, strength, depth, rise=30, peak=1.4):
 	c, sigma = (m.cP, strength * (K + 4 / 3 * G) / K) if elastic else (m.bulkSoundSpeed, strength + 2 / 3 * flow)
 	up, start, decay = peak * sigma / (m.density * c), rise * d / c, 2 * peak * depth * d / c
 	columns = round(2.5 * peak * depth) + depth + rise
-	bar = Bar(d, 0., 6)
-	bar.body('bar', m, 0., columns * d)
-	piston = bar.drive('bar', 0.)
+	bar = trials.bar(m, columns * d, d, rows=6)
+	piston = scenes.driveEnd(bar, 'bar', 0.)
 	surface = []
-	while bar.O.time < (columns + 3.2 * depth) * d / c:
-		bar.steps(10)
-		t = bar.O.time
-		bar.move(piston, vx=up * math.sin(0.5 * math.pi * t / start)**2 if t < start else max(0., up * (1 - (t - start) / decay)))
-		surface.append((t * c / d - columns, bar.profile('bar', 'vx')[1][-2:].mean()))
+	while omega().time < (columns + 3.2 * depth) * d / c:
+		trials.steps(bar, 10)
+		t = omega().time
+		trials.move(piston, vx=up * math.sin(0.5 * math.pi * t / start)**2 if t < start else max(0., up * (1 - (t - start) / decay)))
+		surface.append((t * c / d - columns, scenes.profile(bar, 'bar', 'vx')[1][-2:].mean()))
 	at, v = np.array(surface).T  # travel since the pulse has reached the surface [d]
 	top = int(np.argmax(np.where(at < rise + 0.5 * depth, v, 0.)))
-	return v[top] - v[top:].min(), m.density * c, sigma, bar.engine.counters()['brokenLinks']
+	return v[top] - v[top:].min(), m.density * c, sigma, bar.automata.counters()['brokenLinks']
 
 
 def spall(report, want, quick):

@@ -2,8 +2,10 @@
 """The law in YADE's own loop against McaEngine: the same trajectory."""
 import numpy as np
 
+from ..._yade import scene as omega
 from ...scenes import law2Engines
-from ..automata_scene import AutomataRun, impactBlocks
+from .. import trials
+from ..trials import impactBlocks
 
 JOHNSON_COOK = dict(yieldModel='johnsonCook', yieldStress=0.79e9, hardeningModulus=0.51e9, hardeningExponent=0.26, rateCoefficient=0.014, thermalSoftening=1.03,
                     meltTemperature=1793., heatCapacity=477., eos='mieGruneisen', gruneisen=1.7)
@@ -11,16 +13,16 @@ JOHNSON_COOK = dict(yieldModel='johnsonCook', yieldStress=0.79e9, hardeningModul
 
 def trajectory(road, steps, rule, changes, dt=2e-8):
 	"""Position, velocity, spin, pressure, plastic strain and links of the bodies after `steps` steps, (N, 8), and the number of broken links."""
-	run = AutomataRun(volumeRule=rule, adaptive=False)
+	run = trials.automata(volumeRule=rule, adaptive=False)
 	ids = impactBlocks(**changes)
 	if road == 'law2':
-		run.O.engines = law2Engines(rule)
-	run.steps(steps, dt)
+		omega().engines = law2Engines(rule)
+	trials.steps(run, steps, dt)
 	rows = []
 	for i in ids:
-		s = run.O.bodies[i].state
+		s = omega().bodies[i].state
 		rows.append((s.pos[0], s.pos[1], s.vel[0], s.vel[1], s.angVel[2], s.pressure, s.plasticStrain, s.links))
-	counters = run.engine.counters() if road == 'engine' else run.O.engines[2].counters()
+	counters = run.automata.counters() if road == 'engine' else omega().engines[2].counters()
 	return np.array(rows), counters['brokenLinks']
 
 

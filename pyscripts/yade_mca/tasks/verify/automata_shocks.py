@@ -7,10 +7,10 @@ from scipy.optimize import brentq
 
 from ... import exact, scenes
 from ..._yade import scene as omega
-from ..automata_scene import AutomataRun, Bar, between, crossing, material, order
+from .. import trials
+from ..trials import D, between, crossing, material, order
 from .grid_shocks import PISTONS
 
-D = 1e-3  #: spacing [m]
 DIRECTIONS = {'along': 0., 'across': math.pi / 2}
 LIMITS = {'along': 0.01, 'across': 0.02}
 #: With this linear viscosity a strong shock front does not overshoot. With the default one the material rings behind the front and unloads, so that
@@ -23,9 +23,9 @@ def fronts(bar, part, ref, up, length, shares):
 	"""Speeds of precursor and main shock from the positions of both fronts at several times, and the last profile."""
 	found = []
 	for share in shares:
-		bar.until(share * length / max(ref['precursorD'], ref['D']))
-		x, v = bar.profile(part, 'vx')
-		t = bar.O.time - 0.5 * bar.O.dt  # of the velocities; the positions belong half a step later
+		trials.until(bar, share * length / max(ref['precursorD'], ref['D']))
+		x, v = scenes.profile(bar, part, 'vx')
+		t = omega().time - 0.5 * omega().dt  # of the velocities; the positions belong half a step later
 		pre = ref['precursorU'] if ref['waves'] == 'two' else 0.
 		found.append((t, crossing(x, v, 0.5 * pre) if pre else math.nan, crossing(x, v, 0.5 * (up + pre))))
 	found = np.array(found)
@@ -34,9 +34,8 @@ def fronts(bar, part, ref, up, length, shares):
 
 
 def drive(mat, up, angle, rule, columns, rows):
-	bar = Bar(D, angle, rows, volumeRule=rule, contacts=False)
-	bar.body('bar', mat, 0., columns * D)
-	bar.drive('bar', up)
+	bar = trials.bar(mat, columns * D, angle=angle, rows=rows, volumeRule=rule, contacts=False)
+	scenes.driveEnd(bar, 'bar', up)
 	return bar
 
 
@@ -48,7 +47,7 @@ def shocked(share, angle, rule, viscosity, columns, rows=16):
 	ref = exact.piston(m.density, m.bulkSoundSpeed, m.hugoniotSlope, m.shearModulus, m.yieldStress, up)
 	bar = drive(m, up, angle, rule, columns, rows)
 	_, speed, _, front = fronts(bar, 'bar', ref, up, columns * D, np.linspace(0.4, 0.75, 6))
-	x, P = bar.profile('bar', 'pressure')
+	x, P = scenes.profile(bar, 'bar', 'pressure')
 	return speed, between(x, P, x[0], front), ref
 
 
@@ -91,7 +90,7 @@ def precursor(report, want, quick):
 		columns = 500
 		bar = drive(m, up, 0., 'affine', columns, 10)
 		pre, speed, elastic, plastic = fronts(bar, 'bar', ref, up, columns * D, np.linspace(0.5, 0.9, 6))
-		x, P, v, q = bar.profile('bar', 'pressure', 'vx', 'equivalentStress')
+		x, P, v, q = scenes.profile(bar, 'bar', 'pressure', 'vx', 'equivalentStress')
 		sigma = P + 2 / 3 * q  # axial stress of uniaxial strain
 		add = lambda what, value, reference, unit, limit=0.02: report.add(name + '/' + what, value, reference, limit=limit, unit=unit)
 		add('precursorSpeed', pre, ref['precursorD'], 'm/s')
@@ -129,7 +128,7 @@ def plates(report, name, flyer, target, speed, changes, limit):
 	length = 250 * D
 	omega().reset()
 	s = scenes.plateImpact(*m, length, length, 8 * scenes.PITCH * D, D, speed)
-	AutomataRun(s).until(0.75 * length / max(there['D'], there['precursorD'], here['D']))
+	trials.until(s, 0.75 * length / max(there['D'], there['precursorD'], here['D']))
 	x, v, P, q = scenes.profile(s, 'target', 'vx', 'pressure', 'equivalentStress')
 	xf, vf, Pf, qf = scenes.profile(s, 'flyer', 'vx', 'pressure', 'equivalentStress')
 	face, front, back = 0.5 * (x[0] + xf[-1]), crossing(x, v, 0.5 * (u + there['precursorU'])), crossing(xf, vf, 0.5 * (u + speed))

@@ -3,8 +3,8 @@
 import numpy as np
 
 from ..._yade import yadeClass
-from .. import environment
-from ..grid_scene import GridRun, material
+from .. import environment, trials
+from ..trials import material
 
 REPEATS = 5  #: the best of so many counts
 
@@ -23,8 +23,8 @@ def nanoseconds(feature, n, threads):
 	"""Time per cell and step [ns] inside the engine's step, everything awake, flowing plastically in part of the block."""
 	from yade import O
 	constants, options, block = FEATURES[feature]
-	run = GridRun(sleeping=False, **options)
-	e = run.engine
+	run = trials.grid(sleeping=False, **options)
+	e = run.grid
 	e.ompThreads = threads
 	x = np.linspace(0, 1e-3 * n, n + 1)
 	e.addRectangle(material('4340', **constants), x, x, **block)
@@ -32,7 +32,7 @@ def nanoseconds(feature, n, threads):
 	random = np.random.default_rng(1).uniform(-20, 20, (n + 1, n + 1, 2))
 	e.setVelocity(0, random + np.stack([200 * np.sin(40 * xx), 200 * np.cos(30 * yy)], axis=-1))
 	e.dtFactor = 0.3
-	run.steps(3)
+	trials.steps(run, 3)
 	steps, best = max(5, int(4e6 / n**2)), np.inf
 	O.timingEnabled = True
 	try:

@@ -5,7 +5,8 @@ import math
 import numpy as np
 
 from ... import exact
-from ..grid_scene import GridRun, delay, material, order
+from .. import trials
+from ..trials import delay, material, order
 
 FREQUENCY, DELAY, FORCE, END = 200e3, 6e-6, 1e4, 30e-6  #: Ricker wavelet [Hz], [s], line force [N/m], end [s]
 GAUGES = (0.03, 0.05)  #: distances from the force along the surface [m]; the solution is compared at the last
@@ -17,8 +18,8 @@ def scene(h):
 	reach = m.cP * END
 	size = lambda length: math.ceil(length / h)
 	nx, ny = size(0.5 * (reach + GAUGES[-1]) + 0.002), size(0.5 * math.sqrt(reach**2 - GAUGES[-1]**2) + 0.002)
-	run = GridRun()
-	e = run.engine
+	run = trials.grid()
+	e = run.grid
 	e.addRectangle(m, np.arange(nx + 1) * h, np.arange(-ny, 1) * h)
 	e.symmetry(0, 'left')
 	e.viscous(0, 'right')
@@ -33,10 +34,10 @@ def scene(h):
 def solve(h):
 	"""(material, run, [(t, ux, uz) per gauge]) with uz into the solid, for unit force."""
 	m, run = scene(h)
-	run.exactly(END, 0.6)
+	trials.exactly(run, END, 0.6)
 	out = []
 	for k, x in enumerate(GAUGES):
-		g = run.engine.gauge(k)
+		g = run.grid.gauge(k)
 		out.append((g[:, 0], (g[:, 1] - x) / FORCE, -(g[:, 2] + 1e-9 * h) / FORCE))
 	return m, run, out
 
@@ -56,7 +57,7 @@ def lamb(report, want, quick):
 			limit = 0.1 if h <= 0.5e-3 else None
 			report.add(name, errors[-1], 0., limit=limit, order=order(errors) if len(errors) > 1 else None, unit='relative L2',
 			           passed=falling and (limit is None or errors[-1] <= limit))
-			run.report(report, name)
+			trials.addBalance(report, run, name)
 	if want('speed/Rayleigh'):
 		# between the gauges the displacement into the solid is mostly Rayleigh's wave; the reference is treated in the same way, so what
 		# remains of the other waves cancels: the ratio of delays is the ratio of speeds

@@ -5,7 +5,8 @@ import math
 import numpy as np
 
 from ... import exact
-from ..grid_scene import GridRun, material, order
+from .. import trials
+from ..trials import material, order
 
 DENSITY, YIELD, INNER, OUTER = 1845., 330e6, 0.08, 0.1  #: [kg/m3], [Pa], [m], [m]
 
@@ -13,8 +14,8 @@ DENSITY, YIELD, INNER, OUTER = 1845., 330e6, 0.08, 0.1  #: [kg/m3], [Pa], [m], [
 def collapse(cells, stop):
 	"""Radius [m] of the inner surface at rest, with `cells` through the thickness of a quarter; and the run."""
 	m = material('Be_S200', density=DENSITY, yieldModel='perfect', yieldStress=YIELD)
-	run = GridRun()
-	e = run.engine
+	run = trials.grid()
+	e = run.grid
 	r = np.linspace(INNER, OUTER, cells + 1)
 	n = round(0.5 * math.pi * 0.5 * (INNER + OUTER) / ((OUTER - INNER) / cells))
 	a = np.linspace(0, 0.5 * math.pi, n + 1)
@@ -27,7 +28,7 @@ def collapse(cells, stop):
 	speed = exact.shellVelocity(DENSITY, YIELD, INNER, OUTER, stop)
 	e.setVelocity(0, -speed * INNER / np.hypot(x, y)[..., None]**2 * np.stack([x, y], axis=-1))
 	points = [e.addGauge((INNER * math.cos(t), INNER * math.sin(t) * (1 - 1e-12)), 5) for t in (0., a[n // 3], a[n // 2], 0.5 * math.pi)]
-	run.until(2.5 * (INNER - stop) / speed)  # it stops at about 1.7 of this unit and then rings elastically
+	trials.until(run, 2.5 * (INNER - stop) / speed)  # it stops at about 1.7 of this unit and then rings elastically
 	history = [e.gauge(k) for k in points]
 	return float(np.mean([np.hypot(h[:, 1], h[:, 2]).min() for h in history])), run
 
@@ -41,7 +42,7 @@ def shell(report, want, quick):
 			errors.append(abs(radius / stop - 1))
 			name = 'shell/stop%g/N%d' % (stop * 1e3, cells)
 			report.add(name, radius, stop, limit=limit, unit='m', order=order(errors) if len(errors) > 1 else None)
-			run.report(report, name)
+			trials.addBalance(report, run, name)
 
 
 CASES = [shell]

@@ -3,7 +3,9 @@
 import numpy as np
 
 from ... import exact
-from ..grid_scene import GridRun, crossing, material
+from ..._yade import scene as omega
+from .. import trials
+from ..trials import crossing, material
 
 #: name, set of constants, changes to it, speed of the piston [m/s]
 PISTONS = [
@@ -22,8 +24,8 @@ LENGTH = 0.05  #: [m]
 
 def tube(cells, blocks, edge=False):
 	"""A row of blocks, (material, from, to, cells) each, in which all moves along x."""
-	run = GridRun()
-	e, h = run.engine, LENGTH / cells
+	run = trials.grid()
+	e, h = run.grid, LENGTH / cells
 	for m, a, b, n in blocks:
 		e.addRectangle(m, np.linspace(a, b, n + 1), np.arange(3) * h, edgeViscosity=edge)
 	for k in range(len(blocks)):
@@ -45,17 +47,17 @@ def piston(report, want, quick):
 		m = material(base, eos='mieGruneisen', yieldModel='perfect', **constants)
 		ref = exact.piston(m.density, m.bulkSoundSpeed, m.hugoniotSlope, m.shearModulus, m.yieldStress, up, gruneisen=m.gruneisen)
 		run = tube(cells, [(m, 0., LENGTH, cells)])
-		run.engine.prescribe(0, 'left', x=up)
+		run.grid.prescribe(0, 'left', x=up)
 		fronts = []
 		for share in np.linspace(0.55, 0.9, 8):
-			run.until(share * LENGTH / ref['precursorD'])
-			x, v = run.view(0, 'x')[1], run.view(0, 'vx')[1]
-			t = run.engine.time - 0.5 * run.O.dt  # of the velocities; the positions belong half a step later
+			trials.until(run, share * LENGTH / ref['precursorD'])
+			x, v = run.grid.view(0, 'x')[1], run.grid.view(0, 'vx')[1]
+			t = run.grid.time - 0.5 * omega().dt  # of the velocities; the positions belong half a step later
 			fronts.append((t, crossing(x, v, 0.5 * ref['precursorU']), crossing(x, v, 0.5 * (up + ref['precursorU']))))
 		fronts = np.array(fronts)
 		speed = [np.polyfit(fronts[:, 0], fronts[:, k], 1)[0] for k in (1, 2)]
-		xc, rho, p = run.centres(0)[0][0], run.density(0)[0] * m.density, np.array(run.view(0, 'pressure')[0])
-		sigma = p - run.view(0, 'sxx')[0]
+		xc, rho, p = trials.centres(run, 0)[0][0], trials.density(run, 0)[0] * m.density, np.array(run.grid.view(0, 'pressure')[0])
+		sigma = p - run.grid.view(0, 'sxx')[0]
 		start, plastic, elastic = x[0], fronts[-1, 2], fronts[-1, 1]
 		add = lambda what, value, reference, limit, unit: report.add(name + '/' + what, value, reference, limit=limit, unit=unit)
 		add('precursorSpeed', speed[0], ref['precursorD'], 0.01, 'm/s')
@@ -65,7 +67,7 @@ def piston(report, want, quick):
 		add('stress', middle(xc, sigma, start, plastic), ref['sigma'], 0.005, 'Pa')
 		add('pressure', middle(xc, p, start, plastic), ref['P'], 0.005, 'Pa')
 		add('density', middle(xc, rho, start, plastic), ref['rho'], 0.005, 'kg/m3')
-		run.report(report, name)
+		trials.addBalance(report, run, name)
 
 
 def impact(report, want, quick):
@@ -76,14 +78,14 @@ def impact(report, want, quick):
 		m = [material(k, yieldModel='elastic', shearModulus=0.) for k in (flyer, target)]
 		ref = exact.impedanceMatch(*[exact.Hugoniot(k.density, k.bulkSoundSpeed, k.hugoniotSlope) for k in m], speed)
 		run = tube(cells, [(m[0], -LENGTH, 0., cells), (m[1], 0., LENGTH, cells)], edge)
-		run.engine.setVelocity(0, (speed, 0.))
+		run.grid.setVelocity(0, (speed, 0.))
 		fronts = []
 		end = 0.8 * LENGTH / max(ref['targetD'], ref['flyerD'])
 		for share in np.linspace(0.5, 1, 8):
-			run.until(share * end)
-			x = [run.view(k, 'x')[1] for k in (0, 1)]
-			v = [run.view(k, 'vx')[1] for k in (0, 1)]
-			t = run.engine.time - 0.5 * run.O.dt
+			trials.until(run, share * end)
+			x = [run.grid.view(k, 'x')[1] for k in (0, 1)]
+			v = [run.grid.view(k, 'vx')[1] for k in (0, 1)]
+			t = run.grid.time - 0.5 * omega().dt
 			fronts.append((t, crossing(x[0], v[0], 0.5 * (speed + ref['u'])), crossing(x[1], v[1], 0.5 * ref['u'])))
 		fronts = np.array(fronts)
 		slope = [np.polyfit(fronts[:, 0], fronts[:, k], 1)[0] for k in (1, 2)]
@@ -91,12 +93,12 @@ def impact(report, want, quick):
 		add = lambda what, value, reference, unit: report.add(name + '/' + what, value, reference, limit=0.005, unit=unit)
 		add('particleSpeed', middle(x[1], v[1], face, fronts[-1, 2]), ref['u'], 'm/s')
 		for k, which, a, b in ((0, 'flyer', fronts[-1, 1], face), (1, 'target', face, fronts[-1, 2])):
-			xc = run.centres(k)[0][0]
-			add(which + 'Pressure', middle(xc, np.array(run.view(k, 'pressure')[0]), a, b), ref['P'], 'Pa')
-			add(which + 'DensityRatio', middle(xc, run.density(k)[0], a, b), ref[which + 'Ratio'], '-')
+			xc = trials.centres(run, k)[0][0]
+			add(which + 'Pressure', middle(xc, np.array(run.grid.view(k, 'pressure')[0]), a, b), ref['P'], 'Pa')
+			add(which + 'DensityRatio', middle(xc, trials.density(run, k)[0], a, b), ref[which + 'Ratio'], '-')
 		add('targetShockSpeed', slope[1], ref['targetD'], 'm/s')
 		add('flyerShockSpeed', speed - slope[0], ref['flyerD'], 'm/s')
-		run.report(report, name)
+		trials.addBalance(report, run, name)
 
 
 CASES = [piston, impact]

@@ -4,13 +4,10 @@ import math
 
 import numpy as np
 
-from ..grid_scene import GridRun, delay, material, order
+from .. import trials
+from ..trials import delay, elastic, order
 
 AMPLITUDE = 1e-2  #: particle speed of the small waves [m/s]
-
-
-def steel():
-	return material('4340', eos='linear', yieldModel='elastic', viscosity=(0., 0.))
 
 
 def pulse(t, centre, width):
@@ -24,9 +21,9 @@ def table(centre, width):
 
 def strip(cells, length, polarisation, side, drive):
 	"""A strip in which a plane P or S wave runs along x, driven at one end."""
-	run = GridRun(sleeping=True)
-	e, h = run.engine, length / cells
-	e.addRectangle(steel(), np.linspace(0, length, cells + 1), np.arange(4) * h)
+	run = trials.grid(sleeping=True)
+	e, h = run.grid, length / cells
+	e.addRectangle(elastic(), np.linspace(0, length, cells + 1), np.arange(4) * h)
 	across = polarisation == 'S'
 	for s in ('bottom', 'top'):
 		e.fix(0, s, x=across, y=not across)  # S: no motion along x; P: none along y
@@ -37,26 +34,26 @@ def strip(cells, length, polarisation, side, drive):
 def speeds(report, want, quick):
 	for kind in 'P', 'S':
 		if not want('speed/' + kind): continue
-		m = steel()
+		m = elastic()
 		c, cells, length = (m.cP if kind == 'P' else m.cS), 400, 0.4
 		wave = 40 * length / cells  # about the length of the pulse
 		width, centre = 0.5 * wave / c, 2 * wave / c
 		run = strip(cells, length, kind, 'left', table(centre, width))
 		at = (0.1, 0.3)
 		for x in at:
-			run.engine.addGauge((x, 0.0015))
-		run.exactly(1.15 * length / c, 0.5)  # the reflection is not back yet
-		g = [run.engine.gauge(k) for k in (0, 1)]
+			run.grid.addGauge((x, 0.0015))
+		trials.exactly(run, 1.15 * length / c, 0.5)  # the reflection is not back yet
+		g = [run.grid.gauge(k) for k in (0, 1)]
 		column = 3 if kind == 'P' else 4
 		travel = delay(g[0][:, 0], g[0][:, column], g[1][:, 0], g[1][:, column])
 		report.add('speed/' + kind, (at[1] - at[0]) / travel, c, limit=2e-3, unit='m/s')
-		run.report(report, 'speed/' + kind)
+		trials.addBalance(report, run, 'speed/' + kind)
 
 
 def convergence(report, want, quick):
 	"""A smooth wave at N, 2N, 4N; the left-going error must equal the right-going one."""
 	if not want('convergence'): return
-	m, length = steel(), 0.1
+	m, length = elastic(), 0.1
 	width, centre = 0.008 / m.cP, 0.03 / m.cP
 	levels = (50, 100) if quick else (50, 100, 200, 400)
 	errors = {}
@@ -65,12 +62,12 @@ def convergence(report, want, quick):
 			sign = 1 if side == 'left' else -1
 			t, v = table(centre, width)
 			run = strip(cells, length, 'P', side, (t, [sign * a for a in v]))
-			dt = run.exactly(0.09 / m.cP, 0.5)
+			dt = trials.exactly(run, 0.09 / m.cP, 0.5)
 			x = np.linspace(0, length, cells + 1)
 			away = x if side == 'left' else length - x
-			exact = sign * pulse(run.engine.time - 0.5 * dt - away / m.cP, centre, width)
-			errors.setdefault(side, []).append(math.sqrt(np.mean((run.view(0, 'vx')[1] - exact)**2)) / AMPLITUDE)
-			if cells == levels[-1]: run.report(report, 'convergence/' + side)
+			exact = sign * pulse(run.grid.time - 0.5 * dt - away / m.cP, centre, width)
+			errors.setdefault(side, []).append(math.sqrt(np.mean((run.grid.view(0, 'vx')[1] - exact)**2)) / AMPLITUDE)
+			if cells == levels[-1]: trials.addBalance(report, run, 'convergence/' + side)
 	for k, cells in enumerate(levels):
 		for side in errors:
 			o = order(errors[side][:k + 1]) if k else None
@@ -91,9 +88,9 @@ def patch(report, want, quick):
 	if not want('patch'): return
 	n, size = 8, 0.08
 	x, y = skew(n, size)
-	run = GridRun()
-	e = run.engine
-	e.addBlock(steel(), x, y)
+	run = trials.grid()
+	e = run.grid
+	e.addBlock(elastic(), x, y)
 	gradient = np.array([[3., -2.], [1.5, 4.]])
 	v = np.stack([x, y], axis=-1) @ gradient.T
 	e.setVelocity(0, v)
@@ -103,14 +100,14 @@ def patch(report, want, quick):
 			if k >= 0:
 				e.prescribeNodes(k, (1, 0), v[j, i, 0])
 				e.prescribeNodes(k, (0, 1), v[j, i, 1])
-	run.steps(50)
+	trials.steps(run, 50)
 	t = e.time
-	moved = max(abs(run.view(0, 'x') - x - t * v[..., 0]).max(), abs(run.view(0, 'y') - y - t * v[..., 1]).max()) / (t * abs(v).max())
+	moved = max(abs(run.grid.view(0, 'x') - x - t * v[..., 0]).max(), abs(run.grid.view(0, 'y') - y - t * v[..., 1]).max()) / (t * abs(v).max())
 	report.add('patch/motion', moved, 0., limit=1e-9)
 	for s in 'sxx', 'sxy':
-		f = run.view(0, s)
+		f = run.grid.view(0, s)
 		report.add('patch/' + s, np.ptp(f) / abs(f).max(), 0., limit=1e-9)
-	run.report(report, 'patch')
+	trials.addBalance(report, run, 'patch')
 
 
 def rotation(report, want, quick):
@@ -118,9 +115,9 @@ def rotation(report, want, quick):
 	if not want('rotation'): return
 	h, dt, shear, turn = 0.01, 1e-7, 50, 60
 	corner = {(i, j): np.array([i * h, j * h]) for i in (0, 1) for j in (0, 1)}
-	run = GridRun(adaptive=False)
-	e = run.engine
-	e.addRectangle(steel(), [0, h], [0, h])
+	run = trials.grid(adaptive=False)
+	e = run.grid
+	e.addRectangle(elastic(), [0, h], [0, h])
 	angles = 2 * math.pi * np.arange(turn + 1) / turn
 	for (i, j), p in corner.items():
 		path = [p + np.array([2e-4 * p[1] - 1e-4 * p[0], 0]) * k / shear for k in range(shear + 1)]
@@ -128,13 +125,13 @@ def rotation(report, want, quick):
 		v, mid = np.diff(np.array(path), axis=0) / dt, (np.arange(shear + turn) + 0.5) * dt
 		for d in 0, 1:
 			e.prescribeNodes(e.openNode(0, i, j), (1 - d, d), (list(mid), list(v[:, d])))
-	stress = lambda: np.array([run.view(0, s)[0, 0] for s in ('sxx', 'syy', 'sxy')])
-	run.steps(shear + 1, dt)  # stresses are those of one step ago
+	stress = lambda: np.array([run.grid.view(0, s)[0, 0] for s in ('sxx', 'syy', 'sxy')])
+	trials.steps(run, shear + 1, dt)  # stresses are those of one step ago
 	before = stress()
 	worst = 0.
 	for a in angles[1:]:
 		c, s = math.cos(a), math.sin(a)
-		run.steps(1, dt)
+		trials.steps(run, 1, dt)
 		now = stress()
 		xx, yy, xy = before
 		exact = np.array([c * c * xx + s * s * yy - 2 * c * s * xy, s * s * xx + c * c * yy + 2 * c * s * xy, c * s * (xx - yy) + (c * c - s * s) * xy])

@@ -5,9 +5,11 @@ import math
 import numpy as np
 
 from ... import exact
+from ..._yade import scene as omega
 from ..._yade import yadeClass
 from ...scenes import gradedLines
-from ..interface_scene import D, PITCH, Halves, steel
+from .. import trials
+from ..trials import D, PITCH, elastic
 
 LENGTHS = (10, 16, 20, 40)  #: wavelengths over the spacing
 WIDTH = 3.5  #: of the Gaussian pulse, in spacings: its spectrum covers all LENGTHS
@@ -16,18 +18,19 @@ START, GAUGE = -32, -8  #: centre of the pulse, place of the gauge
 
 def pulse(kind, coupled, h=1., xs=None, window=95.):
 	"""(t, signal, speed) at the gauge: a plane P or S pulse, normal incidence; `window` is its time in spacings over the wave speed."""
-	m = steel()
+	m = elastic()
 	c = m.cP if kind == 'P' else m.cS
 	profile = lambda x: np.exp(-((x / D - START) / WIDTH)**2)
 	left = math.ceil(0.5 * (window - START - GAUGE) + 3 * WIDTH) + 2
 	right = math.ceil(0.5 * (window + START + GAUGE) + 3 * WIDTH) + 2
 	height = 4 * math.ceil(0.25 * 2.15 * window * m.cP / c)  # nothing from the free surfaces arrives in time
 	velocity = (lambda x, y: (profile(x), 0. * y)) if kind == 'P' else (lambda x, y: (0. * y, profile(x)))
-	s = Halves(m, left, 4 * math.ceil(right / 4), height, h, coupled, xs=xs, ys=None if xs is None else np.arange(0, height + 1.), velocity=velocity)
+	s = trials.halves(m, left, 4 * math.ceil(right / 4), height, h, coupled, xs=xs, ys=None if xs is None else np.arange(0, height + 1.), velocity=velocity)
 	dt = 0.14 * D / m.cS
-	s.fix(dt)
+	trials.fixedStep(s, dt)
 	every = 3
-	v = s.record([s.at(GAUGE, 0.5 * height)], 'vx' if kind == 'P' else 'vy', math.ceil(window * D / c / dt / every) * every, every)[:, 0]
+	steps = math.ceil(window * D / c / dt / every) * every
+	v = trials.record(s, [trials.nearest(s, GAUGE, 0.5 * height)], 'vx' if kind == 'P' else 'vy', steps, every)[:, 0]
 	return dt * every * np.arange(len(v)), v, c
 
 
@@ -43,7 +46,7 @@ def reflection(report, want, quick):
 		graded = kind == 'P' and want('reflection/P/graded')
 		if not cells and not graded: continue
 		t, whole, c = pulse(kind, False)
-		m = steel()
+		m = elastic()
 		poisson = 0.5 * (1 - 2 * (m.cS / m.cP)**2) / (1 - (m.cS / m.cP)**2)
 		sent = lambda v, lengths: spectrum(t, v - whole, c, lengths) / spectrum(t, whole, c, lengths)
 		for h in cells:
@@ -68,20 +71,21 @@ def _burst(t, frequency):
 
 def _source(s, at, direction, times, force):
 	"""A force [N/m] on the automaton at `at`, by YADE's own engine."""
-	engine = yadeClass('InterpolatingDirectedForceEngine')(times=list(times), magnitudes=list(force), direction=direction, ids=[int(s.ids[s.at(*at)])])
-	s.O.engines = [yadeClass('ForceResetter')(), engine] + list(s.O.engines)
+	ids = [int(s.ids['half'][trials.nearest(s, *at)])]
+	engine = yadeClass('InterpolatingDirectedForceEngine')(times=list(times), magnitudes=list(force), direction=direction, ids=ids)
+	omega().engines = [yadeClass('ForceResetter')(), engine] + list(omega().engines)
 
 
 def _forced(coupled, frequency, direction, at, left, right, height, steps, dt, every):
 	"""(scene, velocities (samples, 2, automata) in the automata's half, which automata)."""
-	s = Halves(steel(), left, right, height, 1., coupled, readForces=True)
+	s = trials.halves(elastic(), left, right, height, 1., coupled, readForces=True)
 	t = np.arange(steps) * dt
 	_source(s, at, direction, t, 1e3 * _burst(t, frequency))
-	s.fix(dt)
-	keep = np.flatnonzero(s.packing.positions[:, 0] < -1e-3 * D)
+	trials.fixedStep(s, dt)
+	keep = np.flatnonzero(s.packings['half'].positions[:, 0] < -1e-3 * D)
 	out = []
 	for _ in range(steps // every):
-		s.O.run(every, True)
+		omega().run(every, True)
 		out.append(np.stack((s.automata.field('vx')[keep], s.automata.field('vy')[keep])))
 	return s, np.array(out), keep
 
@@ -92,7 +96,7 @@ def point(report, want, quick):
 		for name, direction in ('x', (1, 0, 0)), ('y', (0, 1, 0)):
 			label = 'point/lambdaP%gd/%s' % (wavelength, name)
 			if not want(label): continue
-			m = steel()
+			m = elastic()
 			dt = 0.14 * D / m.cS
 			last = 4 * wavelength + 40 * PITCH * m.cP / m.cS + wavelength  # [spacings over cP]: burst, S wave to the line, and on
 			steps, every = math.ceil(last * D / m.cP / dt), 25
@@ -101,7 +105,7 @@ def point(report, want, quick):
 			args = (m.cP / (wavelength * D), direction, (-40 * PITCH, 0.5 * height), left, right, height, steps, dt, every)
 			whole, a, keep = _forced(False, *args)
 			# leave out what waves from the corners, where the line meets the free surfaces, can have reached
-			x, y = whole.packing.positions[keep].T / D
+			x, y = whole.packings['half'].positions[keep].T / D
 			far = last - math.hypot(40 * PITCH, 0.5 * height)
 			clean = (np.hypot(x, y) > far) & (np.hypot(x, y - height) > far)
 			mass, e = whole.automata.field('mass')[keep], whole.automata.energies()
@@ -114,7 +118,7 @@ def point(report, want, quick):
 def rayleigh(report, want, quick):
 	"""A force on the free surface sends a Rayleigh wave along it across the line; its amplitude beyond the line against the run without."""
 	if not want('rayleigh'): return
-	m, wavelength, gauge = steel(), 20, 24
+	m, wavelength, gauge = elastic(), 20, 24
 	cR = exact.rayleighSpeed(m.cP, m.cS)
 	dt, height, at = 0.14 * D / m.cS, 80, (-70 * PITCH, 80)
 	lengthP = wavelength * m.cP / cR  # the wavelet's frequency is cP/lengthP
@@ -122,18 +126,18 @@ def rayleigh(report, want, quick):
 	steps, every = math.ceil(window * D / m.cP / dt), 4
 	signal = []
 	for coupled in False, True:
-		s = Halves(m, 110, 2 * math.ceil(60), height, 1., coupled, readForces=True)
+		s = trials.halves(m, 110, 2 * math.ceil(60), height, 1., coupled, readForces=True)
 		f = cR / (wavelength * D)
 		t = np.arange(steps) * dt
 		_source(s, at, (0, 1, 0), t, 1e3 * exact.ricker(t, f, 1.2 / f))
-		s.fix(dt)
+		trials.fixedStep(s, dt)
 		place = (28 * PITCH, height)  # an even row: automata on the surface
 		if coupled:
 			k = s.grid.addGauge((place[0] * D, (height - 1e-9) * D), every)
-			s.O.run(steps // every * every, True)
+			omega().run(steps // every * every, True)
 			signal.append(np.interp(np.arange(1, steps // every + 1) * every * dt, s.grid.gauge(k)[:, 0], s.grid.gauge(k)[:, 4]))
 		else:
-			signal.append(s.record([s.at(*place)], 'vy', steps, every)[:, 0])
+			signal.append(trials.record(s, [trials.nearest(s, *place)], 'vy', steps, every)[:, 0])
 	a, b = signal
 	t = np.arange(len(a)) * every * dt
 	ratio = spectrum(t, b, cR, (wavelength,))[0] / spectrum(t, a, cR, (wavelength,))[0]

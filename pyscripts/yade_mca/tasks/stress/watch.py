@@ -1,18 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the cases of `stress` share: two blocks that meet, running a scene, and the measures by which a run is judged."""
+"""What the cases of `stress` share: running a Scene under watch, the measures by which a run is judged, two blocks that meet."""
 import math
 import time
 from dataclasses import replace
 
 import numpy as np
 
-from ... import materials
 from ..._yade import scene as omega
-from ..._yade import yadeClass
 from ...packings import Rectangle, addBodies, hexagonal
+from .. import trials
+from ..trials import D
 
-D = 1e-3  #: spacing [m]
-PITCH = 0.5 * math.sqrt(3)  #: distance of close-packed rows over the spacing
 STEPS = 40000  #: a run that needs more is given up
 FIELDS = ('x', 'y', 'vx', 'vy', 'omega', 'pressure', 'volumeRatio', 'equivalentStress', 'plasticStrain', 'temperature')
 VIEWS = ('x', 'y', 'vx', 'vy', 'pressure', 'sxx', 'syy', 'sxy', 'plasticStrain')
@@ -20,25 +18,6 @@ VIEWS = ('x', 'y', 'vx', 'vy', 'pressure', 'sxx', 'syy', 'sxy', 'plasticStrain')
 
 class StressError(RuntimeError):
 	"""A run that neither ends nor is refused."""
-
-
-def material(name='4340', **overrides):
-	"""McaMat of the library; `poisson` sets the shear modulus from the bulk modulus and Poisson's ratio [-]."""
-	poisson = overrides.pop('poisson', None)
-	m = materials.mcaMat(name, **overrides)
-	if poisson is not None:
-		m.shearModulus = shearModulus(m, poisson)
-	return m
-
-
-def shearModulus(m, poisson):
-	"""G [Pa] of the bulk modulus of `m` at Poisson's ratio [-]; 0.5 gives a fluid."""
-	return 1.5 * m.density * m.bulkSoundSpeed**2 * (1 - 2 * poisson) / (1 + poisson)
-
-
-def elastic(**overrides):
-	"""Linear elastic steel without viscosity."""
-	return material('4340', **dict(dict(eos='linear', yieldModel='elastic', viscosityLinear=0., viscosityQuadratic=0.), **overrides))
 
 
 def jittered(packing, noise, seed=1):
@@ -61,15 +40,15 @@ def advance(n):
 		raise StressError('the run stopped at step %d without an error' % o.iter)
 
 
-class Trial:
-	"""A scene with engines in place: runs it and keeps the largest errors of its balances.
+class Watch:
+	"""Runs a Scene and keeps the largest errors of its balances.
 
-	automata, grid: engines or None; couplers: list; grids: list of (block, material) for the energy from the state of a grid alone. That state does
-	not tell what was dissipated, nor the energy in hourglass patterns, so that for a grid alone only a surplus counts.
+	grids: list of (block, material) for the energy from the state of a grid alone. That state does not tell what was dissipated, nor the energy in
+	hourglass patterns, so that for a grid alone only a surplus counts.
 	"""
 
-	def __init__(self, automata=None, grid=None, couplers=(), grids=()):
-		self.automata, self.grid, self.couplers, self.grids = automata, grid, list(couplers), list(grids)
+	def __init__(self, scene, grids=()):
+		self.automata, self.grid, self.couplers, self.grids = scene.automata, scene.grid, scene.couplers, list(grids)
 		self.first, self.worst, self.count = None, {}, None
 
 	def balance(self):
@@ -170,22 +149,18 @@ def storedVolumetric(m, eps):
 	return np.where(eps >= 0, 0.5 * K * eps**2, K / b**2 * (np.log1p(u) + 1 / (1 + u) - 1))
 
 
-def automataTrial(**options):
-	"""An empty scene with one McaEngine that keeps its account."""
-	o = omega()
-	o.reset()
-	engine = yadeClass('McaEngine')(**dict(dict(account=True), **options))
-	o.engines = [engine]
-	return Trial(engine)
+def watchedAutomata(**attributes):
+	"""Watch of no bodies and a McaEngine that keeps its account."""
+	return Watch(trials.automata(**dict(dict(account=True), **attributes)))
 
 
 def twoBlocks(flyer, target, speed, angle=0., targetAngle=None, slant=0., noise=0., seed=1, sizes=((12, 20), (24, 32)), joined=False, **options):
-	"""Trial: a block flies to the right into a larger one at rest; sizes (width, height) in spacings, nearest automata just do not touch.
+	"""Watch: a block flies to the right into a larger one at rest; sizes (width, height) in spacings, nearest automata just do not touch.
 
 	flyer, target: materials; speed [m/s]; angle, targetAngle: of the rows [rad]; slant: of the flyer's velocity against x [rad]; noise: see jittered().
 	joined: the flyer is bonded to the target by links (one lattice, one mask), speeds as above.
 	"""
-	t = automataTrial(**options)
+	t = watchedAutomata(**options)
 	(fw, fh), (tw, th) = sizes
 	targetAngle = angle if targetAngle is None else targetAngle
 	velocity = (speed * math.cos(slant), speed * math.sin(slant))
@@ -207,19 +182,16 @@ def transit(*mats, length=32 * D, times=4.):
 	return times * length / min(m.cP for m in mats)
 
 
-def gridTrial(blocks, velocity=None, **options):
-	"""Trial: a grid of rectangles side by side; blocks: list of (material, cells across, cells along y) of D; velocity(block, x, y) -> (vx, vy) arrays."""
-	o = omega()
-	o.reset()
+def watchedGrid(blocks, velocity=None, **options):
+	"""Watch of a grid of rectangles side by side; blocks: list of (material, cells across, cells along y) of D; velocity(block, x, y) -> (vx, vy) arrays."""
 	block = {k: options.pop(k) for k in ('hourglass', 'edgeViscosity') if k in options}
-	grid = yadeClass('McaGridEngine')(**options)
+	s = trials.grid(**options)
 	x, made = 0., []
 	for m, nx, ny in blocks:
 		xs, ys = x + np.arange(nx + 1) * D, np.arange(ny + 1) * D
-		made.append((grid.addRectangle(m, xs.tolist(), ys.tolist(), **block), m, xs, ys))
+		made.append((s.grid.addRectangle(m, xs.tolist(), ys.tolist(), **block), m, xs, ys))
 		x = xs[-1]
 	for k, m, xs, ys in made if velocity else ():
 		gx, gy = np.meshgrid(xs, ys)
-		grid.setVelocity(k, np.ascontiguousarray(np.stack(np.broadcast_arrays(*velocity(k, gx, gy)), axis=-1), float))
-	o.engines = [grid]
-	return Trial(grid=grid, grids=[(k, m) for k, m, _, _ in made])
+		s.grid.setVelocity(k, np.ascontiguousarray(np.stack(np.broadcast_arrays(*velocity(k, gx, gy)), axis=-1), float))
+	return Watch(s, [(k, m) for k, m, _, _ in made])
