@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from yade_mca import scenes
 from yade_mca.materials import mcaMat
 from yade_mca.packings import Rectangle, hexagonal
-from yade_mca.scenes import SceneError, gradedLines
+from yade_mca.scenes import gradedLines
 from yade_mca.tasks.verify.automata_shocks import IMPACTS, matched
 
 
