@@ -8,6 +8,7 @@ Raises ImportError, saying what differs and what to do, when the plugin does not
 What only computes needs no YADE: ``from yade_mca import measure`` or ``import yade_mca.packings`` loads nothing in a process without YADE. The classes are
 loaded then when the first of them is asked for (``from yade_mca import McaEngine``, or a function that makes one), or when the script imports ``yade``,
 whichever comes first, with the same names in the same places and the same errors. Where YADE runs already, any import of the package loads them at once.
+(Python runs this file once: after ``from yade_mca import measure`` an ``import yade_mca`` changes nothing, and the classes still wait for their first use.)
 """
 import sys
 

@@ -26,11 +26,12 @@ def setThreadPolicy():
 
 
 def asksForAll(frame):
-	"""Whether the import that runs the package's __init__, called from `frame`, is `import yade_mca` (or `from yade_mca import *`), not one of a module or of single names.
+	"""Whether the import that runs the package's __init__, called from `frame`, is `import yade_mca` (or `from yade_mca import *`).
 
-	Python does not tell a package how it is imported, so this looks at the statement. Where there is none to see (a call of importlib) the name decides.
+	False for one of a module or of single names. Python does not tell a package how it is imported, so this looks at the statement. Where there is none
+	to see (a call of importlib) the name decides.
 	"""
-	while frame and 'importlib' in frame.f_code.co_filename:
+	while frame and (frame.f_code.co_filename.startswith('<frozen importlib') or frame.f_globals.get('__name__') == 'importlib'):
 		if frame.f_locals.get('name', __package__) != __package__: return False  # import yade_mca.measure: the package comes first
 		frame = frame.f_back
 	if frame is None: return True
@@ -40,7 +41,7 @@ def asksForAll(frame):
 
 
 class WithYade:
-	"""Import hook for as long as the plugin is not loaded: the first `import yade` of a script brings YADE and the plugin together, from wherever YADE is."""
+	"""Import hook for as long as the plugin is not loaded: the first `import yade` of a script brings YADE, wherever it is, and the plugin."""
 	hook = None
 
 	def __init__(self, load): self.load = load

@@ -6,18 +6,19 @@ import time
 
 def yadeClass(name):
 	"""The class `name` of YADE or of the plugin. Raises ImportError, with the remedy, when YADE or the plugin cannot be loaded."""
-	return getattr(_wrapper(), name)
+	_load()
+	return getattr(sys.modules['yade.wrapper'], name)
 
 
 def scene():
 	"""YADE's Omega singleton, known as O in scripts. Raises ImportError as yadeClass()."""
-	return _wrapper().Omega()
+	_load()
+	return sys.modules['yade'].O
 
 
-def _wrapper():
+def _load():
 	import yade_mca
 	yade_mca.classes  # asking for them loads them
-	return sys.modules['yade.wrapper']
 
 
 def steps(n):

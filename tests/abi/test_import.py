@@ -44,8 +44,9 @@ def run(text, tmp_path, interpreter=(PYTHON, ), lib=None):
 	"""Text of a process that runs `text` as a script, with nothing of YADE on the path but what the interpreter puts there."""
 	script = tmp_path / 'script.py'
 	script.write_text(text)
-	environment = {**os.environ, 'OMP_NUM_THREADS': '1', 'YADE_MCA_LIB': str(lib or os.environ.get('YADE_MCA_LIB') or BUILD / 'yade_mca_lib'), 'PYTHONPATH': str(ROOT / 'pyscripts')}
-	return subprocess.run([*interpreter, str(script)], env=environment, cwd=tmp_path, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=120).stdout
+	environment = {**os.environ, 'OMP_NUM_THREADS': '1', 'YADE_MCA_LIB': str(lib or BUILD / 'yade_mca_lib'), 'PYTHONPATH': str(ROOT / 'pyscripts')}
+	files = dict(stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+	return subprocess.run([*interpreter, str(script)], env=environment, cwd=tmp_path, text=True, timeout=120, **files).stdout
 
 
 def test_whatComputesNeedsNoYade(tmp_path):
@@ -63,7 +64,9 @@ print('IMPORTED', len(names))
 	assert int(re.search(r'IMPORTED (\d+)', done)[1]) > 40, done
 
 
-@pytest.mark.parametrize('statement', ['import os, yade_mca as y', 'from yade_mca import *', "import importlib; importlib.import_module('yade_mca')", 'def f():\n\timport yade_mca\nf()'])
+@pytest.mark.parametrize('statement', [
+        'import os, yade_mca as y', 'from yade_mca import *', "import importlib; importlib.import_module('yade_mca')", 'def f():\n\timport yade_mca\nf()'
+])
 def test_thePackageLoadsAtOnce(statement, tmp_path):
 	done = run(HEAD + statement + "\nassert 'yade' in sys.modules\nprint(McaMat, O)\n" + EVERYWHERE, tmp_path)
 	assert 'EVERYWHERE' in done, done
@@ -73,10 +76,12 @@ def test_thePackageLoadsAtOnce(statement, tmp_path):
         ('import yade_mca.measure', 'from yade import O'), ('from yade_mca import measure, packings', 'from yade.wrapper import McaEngine'),
         ('from yade_mca.exact import Hugoniot', 'import yade.utils'), ('from yade_mca import scenes', 'from yade_mca import McaEngine'),
         ("import importlib; importlib.import_module('yade_mca.outlines')", 'import yade_mca; yade_mca.McaMat'),
-        ("__import__('yade_mca.materials')", "from yade_mca import materials; materials.mcaMat('4340')"), ('import yade_mca.exact.shock as s', 'import yade_mca; yade_mca.version')
+        ("__import__('yade_mca.materials')", "from yade_mca import materials; materials.mcaMat('4340')"),
+        ('import yade_mca.exact.shock as s', 'import yade_mca; yade_mca.version')
 ])
 def test_aModuleLoadsOnFirstUse(statement, use, tmp_path):
-	done = run(HEAD + statement + "\nassert 'yade' not in sys.modules and '_yade_mca' not in sys.modules\n" + use + '\nO.reset(); McaMat()\n' + EVERYWHERE, tmp_path)
+	notYet = "\nassert 'yade' not in sys.modules and '_yade_mca' not in sys.modules\n"
+	done = run(HEAD + statement + notYet + use + '\nO.reset(); McaMat()\n' + EVERYWHERE, tmp_path)
 	assert 'EVERYWHERE' in done, done
 
 
@@ -87,15 +92,19 @@ def test_insideYadeEveryImportLoads(interpreter, statement, tmp_path):
 	assert 'EVERYWHERE' in done, done
 
 
-@pytest.mark.parametrize('statements', [('import yade_mca', ), ('from yade_mca import *', ), ('from yade_mca import McaMat', ), ('from yade_mca import measure', 'from yade import O'),
-                                        ('from yade_mca import materials', "materials.mcaMat('4340')"), ('import yade_mca.measure', 'yade_mca.guardChecks')])
+@pytest.mark.parametrize('statements', [
+        ('import yade_mca', ), ('from yade_mca import *', ), ('from yade_mca import McaMat', ), ('from yade_mca import measure', 'from yade import O'),
+        ('from yade_mca import materials', "materials.mcaMat('4340')"), ('import yade_mca.measure', 'yade_mca.guardChecks')
+])
 def test_allRoadsEndInTheSameError(statements, tmp_path):
-	done = run('\n'.join("try: exec(%r)\nexcept ImportError as e: print('REFUSED %d:', e)" % (s, k) for k, s in enumerate(statements)), tmp_path, lib=tmp_path)
+	script = ["try: exec(%r)\nexcept ImportError as e: print('REFUSED %d:', e)" % (s, k) for k, s in enumerate(statements)]
+	done = run('\n'.join(script), tmp_path, lib=tmp_path)
 	assert re.findall(r'REFUSED (\d): yade_mca: the compiled part is not built .* What to do: run pyscripts/setup', done) == [str(len(statements) - 1)], done
 
 
 def test_wrongNames(tmp_path):
-	done = run("import yade_mca.measure\nfor s in ('yade_mca.measures', 'yade_mca.McaMatt'):\n\ttry: eval(s)\n\texcept AttributeError as e: print(e)\n", tmp_path)
+	script = "import yade_mca.measure\nfor s in ('yade_mca.measures', 'yade_mca.McaMatt'):\n\ttry: eval(s)\n\texcept AttributeError as e: print(e)\n"
+	done = run(script, tmp_path)
 	assert done.splitlines() == ["module 'yade_mca' has no attribute 'measures'", "module 'yade_mca' has no attribute 'McaMatt'"], done
 
 
