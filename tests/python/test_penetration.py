@@ -179,7 +179,7 @@ def test_killedAndRestartedEndsIdentically(tmp_path, mode, drawn):
 def test_fullDiskKeepsTheLastCheckpointAndTheRunGoesOn(plugin, tmp_path, capsys):
 	"""A limit on the size of files stands for the full disk: writing fails half-way."""
 	from yade_mca import impact, scenes
-	from yade_mca.tasks.penetration import Keeper
+	from yade_mca.tasks.penetration.task import Keeper
 	s = scenes.penetration(thickness=16e-3, spacing=2e-3)
 	run = impact.Impact(s, until=12e-6)
 	run.advance()
