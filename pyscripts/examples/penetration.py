@@ -8,7 +8,7 @@ Run: pyscripts/yade-mca penetration.py with the viewer, pyscripts/yade-mca -n -x
 Sweep: pyscripts/yade-mca-batch penetration.table penetration.py
 """
 from yade import O, PyRunner, plot, runtime, utils
-from yade_mca import measure, plots, scenes
+from yade_mca import scenes
 from yade_mca.expected import expect
 from yade_mca.impact_output import patternPicture
 

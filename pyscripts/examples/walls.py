@@ -7,7 +7,6 @@ Expected numbers: the speed before the bar touches, v0 + g t; the impulse of the
 nearly the speed it came with, the rest goes into its oscillation.
 Sweep: pyscripts/yade-mca-batch walls.table walls.py (spacing)
 """
-import numpy as np
 from yade import O, utils
 from yade.wrapper import (Bo1_Facet_Aabb, Bo1_Sphere_Aabb, ForceResetter, FrictMat, Ig2_Facet_Sphere_ScGeom, Ig2_Sphere_Sphere_ScGeom, InsertionSortCollider, InteractionLoop,
                           NewtonIntegrator)

@@ -2,6 +2,7 @@
 """Finds the compiled part of the plugin, checks that it is whole and fits this YADE, and loads it. Each refusal is an ImportError with a remedy."""
 import atexit
 import contextlib
+import dis
 import importlib.machinery
 import importlib.util
 import io
@@ -22,6 +23,49 @@ def setThreadPolicy():
 	"""Threads of OpenMP that wait sleep instead of spinning, unless the user has said otherwise; without effect when YADE was loaded before."""
 	if 'yade' not in sys.modules:
 		if os.environ.setdefault('OMP_WAIT_POLICY', 'passive') == 'passive': os.environ.setdefault('GOMP_SPINCOUNT', '1000')
+
+
+def asksForAll(frame):
+	"""Whether the import that runs the package's __init__, called from `frame`, is `import yade_mca` (or `from yade_mca import *`).
+
+	False for one of a module or of single names. Python does not tell a package how it is imported, so this looks at the statement. Where there is none
+	to see (a call of importlib) the name decides.
+	"""
+	while frame and (frame.f_code.co_filename.startswith('<frozen importlib') or frame.f_globals.get('__name__') == 'importlib'):
+		if frame.f_locals.get('name', __package__) != __package__: return False  # import yade_mca.measure: the package comes first
+		frame = frame.f_back
+	if frame is None: return True
+	done = [i for i in dis.get_instructions(frame.f_code) if i.offset <= frame.f_lasti and i.opname != 'EXTENDED_ARG']
+	if done[-1].opname != 'IMPORT_NAME': return True
+	return done[-2].argval in (None, ('*', ))  # the names behind `import` of a from statement
+
+
+class WithYade:
+	"""Import hook for as long as the plugin is not loaded: the first `import yade` of a script brings YADE, wherever it is, and the plugin."""
+	hook = None
+
+	def __init__(self, load): self.load = load
+
+	@classmethod
+	def place(cls, load):
+		"""load(): imports YADE and loads the plugin; it removes the hook before."""
+		cls.hook = cls(load)
+		sys.meta_path.insert(0, cls.hook)
+
+	@classmethod
+	def remove(cls):
+		if cls.hook in sys.meta_path: sys.meta_path.remove(cls.hook)
+
+	def find_spec(self, name, path=None, target=None):
+		return importlib.machinery.ModuleSpec(name, self) if name == 'yade' else None
+
+	def create_module(self, spec):
+		self.load()
+		self.spec = sys.modules['yade'].__spec__
+		return sys.modules['yade']
+
+	def exec_module(self, module):
+		module.__spec__ = self.spec  # the import system has put that of the hook
 
 
 def refuse(what, remedy):

@@ -1,27 +1,24 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The one place where the package's Python modules reach for YADE, so that all else imports without it."""
+"""Where the modules of the package reach for YADE: when one of these is called, not when a module is imported. The first call loads YADE and the plugin."""
+import sys
 import time
 
 
 def yadeClass(name):
-	"""The class `name` of YADE or of the plugin. Raises ImportError, with the remedy, when YADE or the plugin is not loaded."""
-	try:
-		import yade.wrapper
-	except ImportError as e:
-		raise ImportError("%s needs YADE: run the script with pyscripts/yade-mca (%s)" % (name, e)) from e
-	c = getattr(yade.wrapper, name, None)
-	if c is None:
-		raise ImportError("YADE runs without the plugin, class %s is missing: put `import yade_mca` first in the script" % name)
-	return c
+	"""The class `name` of YADE or of the plugin. Raises ImportError, with the remedy, when YADE or the plugin cannot be loaded."""
+	_load()
+	return getattr(sys.modules['yade.wrapper'], name)
 
 
 def scene():
-	"""YADE's Omega singleton, known as O in scripts. Raises ImportError when YADE is not there."""
-	try:
-		from yade import O
-	except ImportError as e:
-		raise ImportError('YADE is not loaded: run the script with pyscripts/yade-mca (%s)' % e) from e
-	return O
+	"""YADE's Omega singleton, known as O in scripts. Raises ImportError as yadeClass()."""
+	_load()
+	return sys.modules['yade'].O
+
+
+def _load():
+	import yade_mca
+	yade_mca.classes  # asking for them loads them
 
 
 def steps(n):

@@ -16,7 +16,7 @@ plastic strain, m the mass:
 U0 is the impact speed, L0 the L of the undeformed rod. dU/U0 of the study is velocityLossTail; velocityLossAll counts what the rod as a whole has
 given to the plate. dl/l0 by mass is lengthLoss (the rod erodes from its head, so mass counts length); lengthLossUnbroken counts the mushroomed
 head, too, as rod. dl/l0 as a length is lengthLossGeometric, read when the head leaves the plate: what a radiograph shows. A source that does not
-say what it calls length means one of these. The definitions by mass hold for the two independent codes of tests/data/penetration_peers.csv, too.
+say what it calls length means one of these. The definitions by mass hold for the two independent codes of data/penetration_peers.csv, too.
 """
 import math
 from dataclasses import asdict, dataclass

@@ -13,7 +13,6 @@ import math
 import numpy as np
 
 from . import measure, packings
-from ._yade import scene as omega
 from ._yade import yadeClass
 from ._arguments import array
 from .packings import Rectangle, hexagonal

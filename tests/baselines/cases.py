@@ -23,22 +23,22 @@ def penetration():
 
 def shock():
 	"""Piston into copper, U = 0.1 c0, rows along the motion: shock speed [m/s] and pressure [Pa] over the exact ones."""
-	from yade_mca import exact
-	from yade_mca.tasks import automata_shocks as shocks
+	from yade_mca import exact, scenes
+	from yade_mca.tasks.verify import automata_shocks as shocks
 	m = shocks.material('OFHC_Cu', eos='shockAdiabat', yieldModel='perfect', viscosity=shocks.SMOOTH)
 	m.yieldStress = 0.01 * m.density * m.bulkSoundSpeed**2
 	up, columns = 0.1 * m.bulkSoundSpeed, 120
 	ref = exact.piston(m.density, m.bulkSoundSpeed, m.hugoniotSlope, m.shearModulus, m.yieldStress, up)
 	bar = shocks.drive(m, up, 0., 'affine', columns, 8)
 	speed, front = shocks.fronts(bar, 'bar', ref, up, columns * shocks.D, np.linspace(0.4, 0.75, 6))[1::2]
-	x, P = bar.profile('bar', 'pressure')
+	x, P = scenes.profile(bar, 'bar', 'pressure')
 	return dict(speed=speed / ref['D'], pressure=shocks.between(x, P, x[0], front) / ref['P'])
 
 
 def lamb():
 	"""Lamb's problem with cells of 1 mm: relative L2 error of the displacement at the surface 50 mm from the force [-]."""
 	from yade_mca import exact
-	from yade_mca.tasks import grid_lamb as g
+	from yade_mca.tasks.verify import grid_lamb as g
 	m, run, gauges = g.solve(1e-3)
 	t, ux, uz = gauges[-1]
 	rz, rx = exact.lambSurface(t, g.GAUGES[-1], m.density, m.cP, m.cS, g.FREQUENCY, g.DELAY)
@@ -47,7 +47,7 @@ def lamb():
 
 def reflection():
 	"""Normal P wave onto a tied row, cells of two spacings: amplitude sent back at a wavelength of 20 spacings [-]."""
-	from yade_mca.tasks import interface_waves as w
+	from yade_mca.tasks.verify import interface_waves as w
 	t, whole, c = w.pulse('P', False, window=60.)
 	tied = w.pulse('P', True, 2., window=60.)[1]
 	sent = lambda lengths: w.spectrum(t, tied - whole, c, lengths) / w.spectrum(t, whole, c, lengths)

@@ -18,7 +18,7 @@ import store
 
 @pytest.mark.parametrize('group', cases.GROUPS)
 def test_numbersAreThoseStored(group):
-	import yade_mca
+	import yade_mca  # noqa: F401  loads the classes
 	rows = store.compare(group, cases.GROUPS[group]())
 	assert rows and all(r[4] for r in rows), 'if the change is meant: tests/baseline update %s --why TEXT\n%s' % (group, rows)
 
@@ -70,7 +70,7 @@ def test_toolRefusesInOneLine(words, said):
 
 def test_engineIsSeveralTimesAsFastAsTheLawInYadesLoop():
 	"""Both in turn in this process, the best of their turns: whatever the load of the machine is, it meets both. (Quiet machines show 15 and more.)"""
-	import yade_mca
+	import yade_mca  # noqa: F401  loads the classes
 	sys.path.insert(0, str(TESTS / 'python'))
 	import law2_scene
 	from yade import O

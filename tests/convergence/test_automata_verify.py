@@ -4,11 +4,11 @@ import math
 
 import pytest
 
-import yade_mca.tasks.automata_balance as balance
-import yade_mca.tasks.automata_elastic as elastic
-import yade_mca.tasks.automata_impact as impact
-import yade_mca.tasks.automata_roads as roads
-import yade_mca.tasks.automata_shocks as shocks
+import yade_mca.tasks.verify.automata_balance as balance
+import yade_mca.tasks.verify.automata_elastic as elastic
+import yade_mca.tasks.verify.automata_impact as impact
+import yade_mca.tasks.verify.automata_roads as roads
+import yade_mca.tasks.verify.automata_shocks as shocks
 from yade_mca.tasks import Report
 
 
@@ -60,8 +60,8 @@ def test_energySumConvergesWithTheStep():
 @pytest.mark.study
 def test_all():
 	"""The whole of `pyscripts/run verify automata`."""
-	import yade_mca.tasks.verify_automata as task
-	from yade_mca.tasks.progress import Progress
+	from yade_mca.tasks.verify import task
 	report = Report('verify automata')
-	task.run(None, report, Progress)
+	for group in task.groups('automata'):
+		group(report, lambda name: True, False)
 	assert not report.failed, '\n' + report.table()

@@ -2,10 +2,10 @@
 """The cases of `verify grid`, coarse: every error below its limit, every balance at round-off."""
 import pytest
 
-import yade_mca.tasks.grid_lamb as lamb
-import yade_mca.tasks.grid_shell as shell
-import yade_mca.tasks.grid_shocks as shocks
-import yade_mca.tasks.grid_waves as waves
+import yade_mca.tasks.verify.grid_lamb as lamb
+import yade_mca.tasks.verify.grid_shell as shell
+import yade_mca.tasks.verify.grid_shocks as shocks
+import yade_mca.tasks.verify.grid_waves as waves
 from yade_mca.tasks import Report
 
 

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Puts the package, this folder and stock YADE on the path, so that `pytest tests/python` works from anywhere.
 
-Where the compiled part is not built, the package is opened without it: the modules tested here that only compute need no YADE. Tests that
-do need it ask for the fixture `plugin` and are skipped then.
+Where the compiled part is not built, the modules tested here that only compute work all the same. Tests that need it ask for the fixture `plugin`
+and are skipped then.
 """
-import importlib
 import sys
-import types
 from pathlib import Path
 
 import hypothesis
@@ -24,14 +22,13 @@ for p in Path('/usr/lib').glob('*/yade-double/py'):  # where Debian's package ke
 	if str(p) not in sys.path:
 		sys.path.append(str(p))
 
+import yade_mca.measure  # noqa: E402  a module first, so that the package is there whether its classes can be loaded or not
+
 try:
-	importlib.import_module('yade_mca')
+	yade_mca.classes
 	MISSING = None
 except ImportError as e:
 	MISSING = str(e)
-	bare = types.ModuleType('yade_mca')
-	bare.__path__ = [str(PACKAGE)]
-	sys.modules['yade_mca'] = bare
 
 
 @pytest.fixture
@@ -41,5 +38,5 @@ def plugin():
 		pytest.skip(MISSING)
 	from yade import O
 	O.reset()
-	yield sys.modules['yade_mca']
+	yield yade_mca
 	O.reset()

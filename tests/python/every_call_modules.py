@@ -3,7 +3,6 @@
 import dataclasses
 import importlib
 import inspect
-import math
 
 import every_call_judge as judge
 import every_call_table as table

@@ -3,7 +3,6 @@
 
 A class that is not in HOLDERS is put into O.engines after a McaEngine when it is an engine, and stands alone otherwise.
 """
-import math
 import time
 
 D = 1e-3
@@ -65,8 +64,8 @@ def gridScene(reuse=None):
 
 def coupledScene(reuse=None):
 	from yade import O
-	from yade_mca.tasks.interface_scene import PITCH, Halves
-	Halves(metal(), 4 * PITCH, 3, 3, velocity=lambda x, y: (5 + 0 * x, 2 + 0 * x), account=True)
+	from yade_mca.tasks import trials
+	trials.halves(metal(), 4 * trials.PITCH, 3, 3, velocity=lambda x, y: (5 + 0 * x, 2 + 0 * x), account=True)
 	if reuse is not None: O.engines = [reuse if type(e) is type(reuse) else e for e in O.engines]
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 if __name__ == '__main__':
 	sys.path.insert(0, str(Path(__file__).resolve().parent))
-	import yade_mca
+	import yade_mca  # noqa: F401  loads the classes
 
 from matrix_actions import ACTIONS, undisturbed
 from matrix_scene import DT, MatrixScene, difference

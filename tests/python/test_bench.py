@@ -7,7 +7,10 @@ import numpy as np
 import pytest
 
 from yade_mca import plots
-from yade_mca.tasks import bench, bench_doc, bench_google, bench_plan, bench_plots, bench_process, bench_results, cli
+from yade_mca.tasks import cli
+from yade_mca.tasks.bench import google, plan, process, results
+from yade_mca.tasks.bench import plots as pictures
+from yade_mca.tasks.bench import task as bench
 from yade_mca.tasks.report import Report
 
 #: what every record of a run that came to its end holds
@@ -33,14 +36,14 @@ def test_wrongOptionsEndInOneLineAndStatus2(capsys, argv, word):
 
 def test_planCoversEveryCaseWithNamesOfItsOwn():
 	for isQuick in (True, False):
-		jobs = bench_plan.plan(isQuick)
-		names = [bench_plan.name(j) for j in jobs]
+		jobs = plan.plan(isQuick)
+		names = [plan.name(j) for j in jobs]
 		assert len(set(names)) == len(names), sorted(n for n in names if names.count(n) > 1)
-		assert {j['case'] for j in jobs} == set(bench_plan.CASES) == set(bench_process.MODULES)
+		assert {j['case'] for j in jobs} == set(plan.CASES) == set(process.MODULES)
 		assert {j['rule'] for j in jobs} == {'affine', 'inversePower', 'meanDistance'} and {True, False} == {j['sleeping'] for j in jobs} and {1, 2} == {j['threads'] for j in jobs}
-	assert all(j['threads'] == 1 for j in bench_plan.plan(True, cores=1)) and {j['case'] for j in bench_plan.plan(False, ['law'])} == {'law'}
+	assert all(j['threads'] == 1 for j in plan.plan(True, cores=1)) and {j['case'] for j in plan.plan(False, ['law'])} == {'law'}
 	with pytest.raises(ValueError, match='colour'):
-		bench_plan.job('law', 'McaEngine', 10, colour=1)
+		plan.job('law', 'McaEngine', 10, colour=1)
 
 
 @pytest.mark.parametrize('case, solver, n, options', [
@@ -55,7 +58,7 @@ def test_planCoversEveryCaseWithNamesOfItsOwn():
         ('law', 'CpmMat', 400, dict(short=True)),
 ])
 def test_recordOfATinyRun(plugin, case, solver, n, options):
-	r = bench_process.execute(bench_plan.job(case, solver, n, **options))
+	r = process.execute(plan.job(case, solver, n, **options))
 	assert isinstance(r['processor'], str) and r['processorSeconds'] > 0
 	assert RECORD - set(r) <= {'error', 'energyError', 'wall'} and not r.get('ended'), r
 	assert r['steps'] > 0 and r['stepping'] > 0 and r['memory'] > 50 and (r['automata'] > 0) == (solver != 'grid') and (r['cells'] > 0) == (solver in ('grid', 'coupled'))
@@ -70,20 +73,20 @@ def test_recordOfATinyRun(plugin, case, solver, n, options):
 
 def test_halvingTheSpacingQuartersTheErrorOfAWave(plugin):
 	for solver in ('automata', 'grid'):
-		a, b = (bench_process.execute(bench_plan.job('elasticWave', solver, n))['error'] for n in (3, 6))
+		a, b = (process.execute(plan.job('elasticWave', solver, n))['error'] for n in (3, 6))
 		assert 3 < a / b < 5, solver
 
 
 def test_aRunInItsOwnProcess(plugin):
-	r = bench_process.measured(bench_plan.job('elasticWave', 'grid', 3, threads=2))
+	r = process.measured(plan.job('elasticWave', 'grid', 3, threads=2))
 	assert r['threads'] == 2 and r['wall'] > r['stepping'] and r['name'] == 'elasticWave/grid/N3/2threads' and 'started' not in r
 
 
 def test_whatEndsARunIsAResultAndWhatBreaksItAFailure(plugin):
-	r = bench_process.execute(bench_plan.job('taylorBar', 'automata', 4, rule='nothing'))
+	r = process.execute(plan.job('taylorBar', 'automata', 4, rule='nothing'))
 	assert 'volumeRule' in r['ended']
 	report = Report('t')
-	bench_results.add(report, [dict(r, mayEnd=True), dict(r, mayEnd=False), dict(bench_plan.job('law', 'Law2', 9), name='x', failed='killed')])
+	results.add(report, [dict(r, mayEnd=True), dict(r, mayEnd=False), dict(plan.job('law', 'Law2', 9), name='x', failed='killed')])
 	assert [c.passed for c in report.cases] == [False, False]
 
 
@@ -94,9 +97,9 @@ def test_paretoFront():
 
 def made(case, solver, n, stepping, **options):
 	extra = {k: options.pop(k) for k in ('error', 'result', 'signal', 'automataNs') if k in options}
-	j = bench_plan.job(case, solver, n, **options)
+	j = plan.job(case, solver, n, **options)
 	phases = dict(density=10., pairs=20., cells=5.)
-	return dict(j, name=bench_plan.name(j), stepping=stepping, timers=stepping, built=.1, wall=2., steps=10, automata=n * n, cells=0, simulated=1e-6, energyError=1e-3, phases=phases, phasesPerStep=phases, memory=100., load=1.,
+	return dict(j, name=plan.name(j), stepping=stepping, timers=stepping, built=.1, wall=2., steps=10, automata=n * n, cells=0, simulated=1e-6, energyError=1e-3, phases=phases, phasesPerStep=phases, memory=100., load=1.,
 	            compiler='GCC', isa='x86-64', processor='p', commit='c', version='v', cellNs=None, **{'error': None, 'automataNs': 10., **extra})
 
 
@@ -109,7 +112,7 @@ def example():
 	        made('penetration', 'automata', 10, .2, result=dict(lengthLoss=.3, velocityLossAll=.1, velocityLossTail=.04))]
 	records += [made('law', 'McaEngine', 100, .01, automataNs=50.), made('law', 'McaEngine', 100, .005, automataNs=25., threads=2), made('law', 'CpmMat', 100, .2, automataNs=1000.),
 	            made('law', 'Law2', 100, .2, automataNs=1000., kind='elastic')]
-	return bench_results.giveErrors(records)
+	return results.giveErrors(records)
 
 
 def test_errorsAgainstTheFinestRun():
@@ -121,30 +124,30 @@ def test_errorsAgainstTheFinestRun():
 
 def test_ratios():
 	records = example()
-	(row, ) = bench_results.equalError(records)
+	(row, ) = results.equalError(records)
 	assert row[:2] == (120, 24) and row[5] == pytest.approx(4.) and row[6]  # the same error in a quarter of the time
-	assert bench_results.widths(records)[0][:5] == (120, 10, .1, .2, 2.)
-	assert bench_results.speedUps(records) == [('law/McaEngine/N100', pytest.approx(2.), 1.)]
-	assert {r[3]: r[5] for r in bench_results.peers(records) if r[2] == 1} == {'McaEngine': 1., 'CpmMat': 20., 'Law2': None}
+	assert results.widths(records)[0][:5] == (120, 10, .1, .2, 2.)
+	assert results.speedUps(records) == [('law/McaEngine/N100', pytest.approx(2.), 1.)]
+	assert {r[3]: r[5] for r in results.peers(records) if r[2] == 1} == {'McaEngine': 1., 'CpmMat': 20., 'Law2': None}
 	report = Report('t')
-	bench_results.add(report, records)
+	results.add(report, records)
 	cases = {c.name: c for c in report.cases}
 	assert cases['law/N100/plastic/1threads/CpmMatOverMcaEngine'].passed and cases['law/N100/plastic/1threads/CpmMatOverMcaEngine'].limit == 12
 	for c in report.cases:  # an aim that is not asserted is not printed as a reference
 		assert c.limit is not None or (c.reference is None and not c.asserted), c.name
 	assert cases['law/N100/plastic/1threads/McaEngine'].value == records[[r['name'] for r in records].index('law/McaEngine/N100')]['automataNs']
 	slow = Report('t')
-	bench_results.add(slow, [dict(r, automataNs=500.) if r['solver'] == 'CpmMat' else r for r in records])
+	results.add(slow, [dict(r, automataNs=500.) if r['solver'] == 'CpmMat' else r for r in records])
 	assert [c.name for c in slow.failed] == ['law/N100/plastic/1threads/CpmMatOverMcaEngine']
 	for load, passed in ((1., False), (5., True)):  # two threads are held to the target on an idle machine only
 		r = Report('t')
-		bench_results.add(r, [dict(x, load=load, timers=.009) if x['threads'] == 2 else x for x in records])
+		results.add(r, [dict(x, load=load, timers=.009) if x['threads'] == 2 else x for x in records])
 		assert next(c for c in r.cases if c.name == 'law/McaEngine/N100/2threads').passed is passed
 
 
 def test_picturesAndTables(tmp_path):
 	records = [{k: v for k, v in r.items() if k != 'signal'} for r in example()]
-	for name, draw in bench_plots.PICTURES.items():
+	for name, draw in pictures.PICTURES.items():
 		picture = draw(tmp_path / name, records)
 		assert (tmp_path / picture).read_bytes().startswith(b'\x89PNG') and (tmp_path / picture).stat().st_size > 10000
 	(tmp_path / 'bench.json').write_text(json.dumps(dict(records=records, kernels=dict(bench_grid=[dict(name='step<Feature::plastic>/64/1', time=1., ns_per_cell=17.)]))))
@@ -155,9 +158,9 @@ def test_picturesAndTables(tmp_path):
 
 
 def test_aFolderKeepsTheCasesThatAreNotRunAgain(tmp_path, monkeypatch):
-	monkeypatch.setattr(bench_process, 'measured', lambda j: dict(made(j['case'], j['solver'], j['n'], 1., error=.1), name=bench_plan.name(j)))
-	monkeypatch.setattr(bench_plan, 'quick', lambda: [bench_plan.job('elasticWave', 'grid', 3), bench_plan.job('plasticShock', 'grid', 3)])
-	monkeypatch.setattr(bench_google, 'run', lambda quick: ({}, ['not built']))
+	monkeypatch.setattr(process, 'measured', lambda j: dict(made(j['case'], j['solver'], j['n'], 1., error=.1), name=plan.name(j)))
+	monkeypatch.setattr(plan, 'quick', lambda: [plan.job('elasticWave', 'grid', 3), plan.job('plasticShock', 'grid', 3)])
+	monkeypatch.setattr(google, 'run', lambda quick: ({}, ['not built']))
 	out = ['--quick', '--out', str(tmp_path), '--json', str(tmp_path / 'x.json')]
 	assert cli.main(['bench', *out]) == 0 and cli.main(['bench', *out, '--only', 'plasticShock']) == 0
 	assert [r['case'] for r in json.loads((tmp_path / 'bench.json').read_text())['records']] == ['elasticWave', 'plasticShock']
@@ -173,8 +176,8 @@ def test_theFasterOfTwoRunsWithTheSameLibraries():
 
 
 def test_programsThatAreNotBuiltAreSaidSo(tmp_path):
-	assert bench_google.run(True, tmp_path) == ({}, ['bench_grid is not built (build target bench_grid)', 'bench_automata is not built (build target bench_automata)'])
+	assert google.run(True, tmp_path) == ({}, ['bench_grid is not built (build target bench_grid)', 'bench_automata is not built (build target bench_automata)'])
 	(tmp_path / 'bench_grid').write_text('#!/bin/sh\necho \'{"benchmarks": [{"name": "a", "time_unit": "us", "real_time": 2.0, "run_type": "iteration", "ns_per_cell": 3.0}]}\'\n')
 	(tmp_path / 'bench_grid').chmod(0o755)
-	found, remarks = bench_google.run(False, tmp_path)
+	found, remarks = google.run(False, tmp_path)
 	assert found == dict(bench_grid=[dict(name='a', time=2000., ns_per_cell=3.)]) and len(remarks) == 1

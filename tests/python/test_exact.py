@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The exact solutions agree with independently computed tables and with their own defining equations."""
-import csv
 import math
 
 import numpy as np

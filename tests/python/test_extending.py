@@ -7,8 +7,6 @@ import subprocess
 import textwrap
 from pathlib import Path
 
-import pytest
-
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / 'plugin' / 'doc' / 'extending.rst'
 

@@ -4,20 +4,20 @@ import math
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
+
+from yade_mca._yade import scene as omega
+from yade_mca.tasks import trials
 
 D, PITCH = 1e-3, 0.5 * math.sqrt(3)
 
 
 @pytest.fixture
 def halves(plugin):
-	from yade_mca.tasks.interface_scene import Halves, steel
-
 	def make(material=None, left=6 * PITCH, right=4, height=6, **options):
-		return Halves(material or steel(), left, right, height, **options)
+		return trials.halves(material or trials.elastic(), left, right, height, **options)
 
 	return make
 
@@ -31,112 +31,112 @@ def message(run):
 def test_tiesTheRowAndHandsItsMassToTheNodes(halves):
 	s = halves()
 	before = s.grid.energies()
-	s.O.run(1, True)
-	assert len(s.coupler.rowIds) == 7 and before['kinetic'] == 0
-	assert np.allclose(np.sum(s.coupler.rowShares, axis=1), 1)
-	mass = sum(s.O.bodies[i].state.mass for i in s.coupler.rowIds)
-	assert math.isclose(mass, 0.5 * s.material.density * PITCH * D * 6 * D, rel_tol=1e-12)
+	omega().run(1, True)
+	assert len(s.couplers[0].rowIds) == 7 and before['kinetic'] == 0
+	assert np.allclose(np.sum(s.couplers[0].rowShares, axis=1), 1)
+	mass = sum(omega().bodies[i].state.mass for i in s.couplers[0].rowIds)
+	assert math.isclose(mass, 0.5 * s.facts['material'].density * PITCH * D * 6 * D, rel_tol=1e-12)
 
 
 def test_errorsNameBodyAndDistanceAndNothingMoves(halves):
 	s = halves(velocity=lambda x, y: (5 + 0 * x, 0 * x))
-	on = [b.id for b in s.O.bodies if abs(b.state.pos[0]) < 1e-9]
-	b = s.O.bodies[on[3]]
+	on = [b.id for b in omega().bodies if abs(b.state.pos[0]) < 1e-9]
+	b = omega().bodies[on[3]]
 	good = b.state.pos
 	b.state.pos = (-3e-5, good[1], 0)
-	text = message(lambda: s.O.run(1, True))
+	text = message(lambda: omega().run(1, True))
 	assert 'body %d' % b.id in text and '3e-05 m' in text and "'grid'" in text, text
 	assert s.grid.steps == 0 and abs(s.grid.view(0, 'x')[0, 0]) == 0
 	b.state.pos = good
 	s.automata.reload()
-	s.O.run(3, True)
+	omega().run(3, True)
 	assert s.grid.steps == 3
 
 
 def test_unlikeMaterialsAreRefusedUnlessAllowed(halves):
 	s = halves()
-	for b in s.O.bodies:
+	for b in omega().bodies:
 		b.material.shearModulus *= 1.05
-	text = message(lambda: s.O.run(1, True))
+	text = message(lambda: omega().run(1, True))
 	assert 'shearModulus' in text and 'otherMaterials' in text
-	s.coupler.otherMaterials = True
-	s.O.run(1, True)
+	s.couplers[0].otherMaterials = True
+	omega().run(1, True)
 
 
 def test_orderOfEnginesIsChecked(halves):
-	s = halves()
-	a, b, c, d = s.O.engines
-	s.O.engines = [a, d, b, c]
-	assert 'must follow' in message(lambda: s.O.run(1, True))
+	halves()
+	a, b, c, d = omega().engines
+	omega().engines = [a, d, b, c]
+	assert 'must follow' in message(lambda: omega().run(1, True))
 
 
 def test_gridEngineMissing(halves):
 	s = halves()
-	s.O.engines = [s.stepper, s.automata, s.coupler]
-	assert 'no McaGridEngine' in message(lambda: s.O.run(1, True))
+	omega().engines = [s.facts['stepper'], s.automata, s.couplers[0]]
+	assert 'no McaGridEngine' in message(lambda: omega().run(1, True))
 
 
 @pytest.mark.parametrize('how', ['dead', 'left out'])
 def test_aTiedRowNeedsItsCoupler(halves, how):
 	"""Without it the row would keep the velocity it has; the scene goes on when the coupler is back."""
 	s = halves(velocity=lambda x, y: (5 + 0 * x, 0 * x))
-	s.O.run(5, True)
+	omega().run(5, True)
 	assert s.automata.coupled and s.grid.coupled
-	whole = s.O.engines
-	if how == 'dead': s.coupler.dead = True
-	else: s.O.engines = [e for e in s.O.engines if e != s.coupler]
-	assert 'Put the coupler back' in message(lambda: s.O.run(5, True)) and s.grid.steps == 5
-	s.coupler.dead, s.O.engines = False, whole
-	s.O.run(5, True)
+	whole = omega().engines
+	if how == 'dead': s.couplers[0].dead = True
+	else: omega().engines = [e for e in omega().engines if e != s.couplers[0]]
+	assert 'Put the coupler back' in message(lambda: omega().run(5, True)) and s.grid.steps == 5
+	s.couplers[0].dead, omega().engines = False, whole
+	omega().run(5, True)
 	assert s.grid.steps == 10
 
 
 def test_tiedBodyCannotBeErased(halves):
 	s = halves(velocity=lambda x, y: (5 + 0 * x, 0 * x))
-	s.O.run(3, True)
-	s.O.bodies.erase(s.coupler.rowIds[2])
-	assert 'tied to a grid' in message(lambda: s.O.run(1, True))
+	omega().run(3, True)
+	omega().bodies.erase(s.couplers[0].rowIds[2])
+	assert 'tied to a grid' in message(lambda: omega().run(1, True))
 
 
 def test_otherBodiesCanBeErasedAndTheTieHolds(halves):
 	s = halves(velocity=lambda x, y: (5 * np.cos(300 * x), 0 * x))
-	s.O.run(3, True)
-	row = s.coupler.rowIds
-	s.O.bodies.erase(next(b.id for b in s.O.bodies if b.state.pos[0] < -4 * D))
-	s.O.run(200, True)
+	omega().run(3, True)
+	row = s.couplers[0].rowIds
+	omega().bodies.erase(next(b.id for b in omega().bodies if b.state.pos[0] < -4 * D))
+	omega().run(200, True)
 	x = s.automata.field('x')[np.searchsorted(s.automata.ids, row)]
 	assert abs(x - s.grid.view(0, 'x')[:, 0]).max() == 0
 
 
 def test_stepperTakesTheSmallestAndGrowsSlowly(halves):
 	s = halves()
-	s.stepper.factor = 0.5
-	s.O.run(1, True)
+	s.facts['stepper'].factor = 0.5
+	omega().run(1, True)
 	limits = s.automata.criticalTimeStep, s.grid.criticalTimeStep
-	assert math.isclose(s.stepper.limit, min(limits)) and math.isclose(s.O.dt, 0.5 * min(limits))
-	s.stepper.largest = 0.1 * s.O.dt
-	s.O.run(1, True)
-	small = s.O.dt
-	s.stepper.largest = math.inf
-	s.O.run(1, True)
-	assert math.isclose(s.O.dt, 1.1 * small)
-	s.stepper.factor = 1.5
-	assert 'factor' in message(lambda: s.O.run(1, True))
+	assert math.isclose(s.facts['stepper'].limit, min(limits)) and math.isclose(omega().dt, 0.5 * min(limits))
+	s.facts['stepper'].largest = 0.1 * omega().dt
+	omega().run(1, True)
+	small = omega().dt
+	s.facts['stepper'].largest = math.inf
+	omega().run(1, True)
+	assert math.isclose(omega().dt, 1.1 * small)
+	s.facts['stepper'].factor = 1.5
+	assert 'factor' in message(lambda: omega().run(1, True))
 
 
 def test_tooLargeAStepIsRefusedBeforeAnythingMovesAndTheRunGoesOn(halves):
 	s = halves(velocity=lambda x, y: (5 * np.cos(300 * x), 0 * x), account=True)
-	s.fix(1e-8)
-	s.O.run(5, True)
-	e = s.coupler.energies()
-	s.O.dt = 1e-6
+	trials.fixedStep(s, 1e-8)
+	omega().run(5, True)
+	e = s.couplers[0].energies()
+	omega().dt = 1e-6
 	for _ in range(2):
-		assert 'largest' in message(lambda: s.O.run(1, True))
-	now = s.coupler.energies()
+		assert 'largest' in message(lambda: omega().run(1, True))
+	now = s.couplers[0].energies()
 	assert all(now[k] == e[k] for k in e if k != 'total')  # forces are those of the new positions by now
-	s.O.dt = 1e-8
-	s.O.run(200, True)
-	now = s.coupler.energies()
+	omega().dt = 1e-8
+	omega().run(200, True)
+	now = s.couplers[0].energies()
 	assert abs(now['booked'] - e['booked']) < 1e-11 * e['kinetic']
 
 
@@ -144,10 +144,10 @@ def test_stableAtNearlyTheLimitOfBothSides(halves):
 	"""The tied nodes need no smaller step than automata and grid alone."""
 	for h in (1, 2):
 		s = halves(height=8, h=h, velocity=lambda x, y: (np.where(x < 0, np.sin(9e4 * x + 5e4 * y), 0.) * 1e-3, np.cos(7e4 * y) * 1e-3), factor=0.95)
-		s.O.run(1, True)
-		start = s.coupler.energies()['kinetic']
-		s.O.run(3000, True)
-		assert s.coupler.energies()['kinetic'] < 3 * start
+		omega().run(1, True)
+		start = s.couplers[0].energies()['kinetic']
+		omega().run(3000, True)
+		assert s.couplers[0].energies()['kinetic'] < 3 * start
 
 
 def test_sleepingWakesAcrossTheLineAndChangesNoBit(halves):
@@ -155,10 +155,10 @@ def test_sleepingWakesAcrossTheLineAndChangesNoBit(halves):
 	for sleeping in (True, False):
 		# a pulse from the grid into automata at rest, and one from automata into the grid
 		s = halves(left=40 * PITCH, right=60, height=8, velocity=lambda x, y: (np.exp(-((x / D - 40) / 4)**2) + np.exp(-((x / D + 25) / 4)**2), 0 * x), sleeping=sleeping)
-		s.fix(3e-8)
-		s.O.run(330, True)
+		trials.fixedStep(s, 3e-8)
+		omega().run(330, True)
 		results.append((s.automata.field('vx').tobytes(), s.grid.view(0, 'vx').tobytes()))
-		assert abs(s.automata.field('vx')[s.at(-5, 4)]) > 1e-3
+		assert abs(s.automata.field('vx')[trials.nearest(s, -5, 4)]) > 1e-3
 	assert results[0] == results[1]
 
 
@@ -186,9 +186,9 @@ import sys; sys.path[:0] = %r
 import numpy as np, yade_mca
 from yade import O
 from yade_mca import materials
-from yade_mca.tasks.interface_scene import Halves, D
-s = Halves(materials.mcaMat('4340'), 40, 30, 40, velocity=lambda x, y: (200 * np.sin(90 * x + 50 * y), 100 * np.cos(70 * y)))
-s.O.run(150, True)
+from yade_mca.tasks.trials import halves
+s = halves(materials.mcaMat('4340'), 40, 30, 40, velocity=lambda x, y: (200 * np.sin(90 * x + 50 * y), 100 * np.cos(70 * y)))
+O.run(150, True)
 import hashlib
 print('digest', hashlib.sha1(s.automata.field('x').tobytes() + s.automata.field('plasticStrain').tobytes() + s.grid.view(0, 'x').tobytes() + s.grid.view(0, 'energy').tobytes()).hexdigest())
 """

@@ -136,8 +136,11 @@ def hugoniot(m, up):
 @pytest.mark.parametrize('road', ['engine', 'grid'])
 def test_shockOfThePolynomial(plugin, road, name):
 	"""A piston of 1000 m/s into material without strength: front and pressure behind it, away from both ends."""
-	from yade_mca.tasks.automata_shocks import drive, between, crossing
-	from yade_mca.tasks.grid_shocks import LENGTH, middle, tube
+	from yade import O
+	from yade_mca import scenes
+	from yade_mca.tasks import trials
+	from yade_mca.tasks.verify.automata_shocks import drive, between, crossing
+	from yade_mca.tasks.verify.grid_shocks import LENGTH, middle, tube
 	up = 1000.
 	m = materials.get(name, eos='polynomial', yieldModel='perfect', yieldStress=1e6, shearModulus=1e9, viscosityLinear=1.)
 	speed, P = hugoniot(m, up)
@@ -145,18 +148,18 @@ def test_shockOfThePolynomial(plugin, road, name):
 	mat, found = materials.mcaMat(m), []
 	if road == 'grid':
 		run = tube(400, [(mat, 0., LENGTH, 400)])
-		run.engine.prescribe(0, 'left', x=up)
+		run.grid.prescribe(0, 'left', x=up)
 		for share in (0.4, 0.7):
-			run.until(share * LENGTH / speed)
-			x, v = run.view(0, 'x')[1], run.view(0, 'vx')[1]
-			found.append((run.engine.time - 0.5 * run.O.dt, crossing(x, v, 0.5 * up)))
-		behind = middle(run.centres(0)[0][0], np.array(run.view(0, 'pressure')[0]), x[0], found[-1][1])
+			trials.until(run, share * LENGTH / speed)
+			x, v = run.grid.view(0, 'x')[1], run.grid.view(0, 'vx')[1]
+			found.append((run.grid.time - 0.5 * O.dt, crossing(x, v, 0.5 * up)))
+		behind = middle(trials.centres(run, 0)[0][0], np.array(run.grid.view(0, 'pressure')[0]), x[0], found[-1][1])
 	else:
 		bar = drive(mat, up, 0., 'affine', 250, 8)
 		for share in (0.4, 0.7):
-			bar.until(share * 250 * D / speed)
-			x, v, p = bar.profile('bar', 'vx', 'pressure')
-			found.append((bar.O.time - 0.5 * bar.O.dt, crossing(x, v, 0.5 * up)))
+			trials.until(bar, share * 250 * D / speed)
+			x, v, p = scenes.profile(bar, 'bar', 'vx', 'pressure')
+			found.append((O.time - 0.5 * O.dt, crossing(x, v, 0.5 * up)))
 		behind = between(x, p, x[0], found[-1][1])
 	(t0, x0), (t1, x1) = found
 	assert (x1 - x0) / (t1 - t0) == pytest.approx(speed, rel=0.01)

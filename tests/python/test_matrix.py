@@ -17,7 +17,7 @@ from pathlib import Path
 
 import pytest
 
-from matrix_actions import ACTIONS, CONSTANTS, D, HIT, OBJECT, OTHER, SOFT
+from matrix_actions import ACTIONS, CONSTANTS, D, HIT, OBJECT, OTHER
 from matrix_cells import GAP, AFTER, ROADS, STOPS, cells, doesNotApply
 from matrix_scene import difference, reference
 

@@ -191,8 +191,9 @@ def test_paraviewFilesFollowLinksAndStayDevices(tmp_path):
 def test_aFullDiskCostsNoNumberOfOtherTasks(tmp_path, monkeypatch, capsys, words, files, said):
 	"""What was measured (of bench: replaced here by what runs return) is shown and reported, and every missing file named."""
 	from test_bench import made
-	from yade_mca.tasks import bench_plan, bench_process, cli
-	monkeypatch.setattr(bench_process, 'measured', lambda j: dict(made(j['case'], j['solver'], j['n'], 1., error=.1), name=bench_plan.name(j)))
+	from yade_mca.tasks import cli
+	from yade_mca.tasks.bench import plan, process
+	monkeypatch.setattr(process, 'measured', lambda j: dict(made(j['case'], j['solver'], j['n'], 1., error=.1), name=plan.name(j)))
 	out = tmp_path / 'out'
 	out.mkdir()
 	for name in files:

@@ -5,7 +5,6 @@ import os
 import resource
 import signal
 import subprocess
-import sys
 import tempfile
 import time
 from pathlib import Path
@@ -180,7 +179,7 @@ def test_killedAndRestartedEndsIdentically(tmp_path, mode, drawn):
 def test_fullDiskKeepsTheLastCheckpointAndTheRunGoesOn(plugin, tmp_path, capsys):
 	"""A limit on the size of files stands for the full disk: writing fails half-way."""
 	from yade_mca import impact, scenes
-	from yade_mca.tasks.penetration import Keeper
+	from yade_mca.tasks.penetration.task import Keeper
 	s = scenes.penetration(thickness=16e-3, spacing=2e-3)
 	run = impact.Impact(s, until=12e-6)
 	run.advance()
@@ -299,7 +298,7 @@ def test_optionsReachTheScene(plugin):
 
 	from yade import O
 
-	from yade_mca.tasks import penetration_options as options
+	from yade_mca.tasks.penetration import options
 	args = Namespace(mode='mca', spacing=2., thickness=16., fracture_strain=0.7, eos='mieGruneisen', friction=0.3, viscosity=2., volume_rule='inversePower', dt_factor=0.2, seed=7,
 	                 speed=1000., spread=0.1, yield_model='linearHardening', obliquity=30., angle=60.)
 	options.fill(args)
@@ -312,9 +311,8 @@ def test_optionsReachTheScene(plugin):
 
 
 def test_referencesOfThePackageAreThoseOfTheTests():
-	from yade_mca.tasks import penetration_report
-	for name in ('penetration_reference.csv', 'penetration_peers.csv'):
-		assert penetration_report.table(name) == table(name)
+	from yade_mca.tasks.penetration import report
+	assert report.table('penetration_reference.csv') == table('penetration_reference.csv')
 
 
 @pytest.mark.study

@@ -4,7 +4,8 @@ import json
 
 import pytest
 
-from yade_mca.tasks import cli, penetration_doc, penetration_report, table1
+from yade_mca.tasks import cli, table1
+from yade_mca.tasks.penetration import doc as penetration_doc, report as penetration_report
 
 
 @pytest.fixture(autouse=True)

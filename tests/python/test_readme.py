@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from yade_mca.tasks import cli, readme, registry
+from yade_mca.tasks import readme, registry
 
 ROOT = Path(__file__).resolve().parents[2]
 TEXT = (ROOT / 'README.md').read_text()

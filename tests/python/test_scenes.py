@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from yade_mca import scenes
 from yade_mca.materials import mcaMat
 from yade_mca.packings import Rectangle, hexagonal
-from yade_mca.scenes import SceneError, gradedLines
-from yade_mca.tasks.automata_shocks import IMPACTS, matched
+from yade_mca.scenes import gradedLines
+from yade_mca.tasks.verify.automata_shocks import IMPACTS, matched
 
 
 @settings(max_examples=100)
@@ -117,7 +117,7 @@ def test_plate_impact_as_it_comes_reaches_the_exact_end_state(plugin, flyer, tar
 
 def test_taylor_bar_stands_as_on_the_grid(plugin):
 	"""OFHC copper at 250 m/s, 16 automata across: shortening within 1 %, width of the mushroom within 5 %."""
-	from yade_mca.tasks import automata_impact
+	from yade_mca.tasks.verify import automata_impact
 	copper = lambda: mcaMat('OFHC_Cu')
 	end = 50e-6
 	length, widths = automata_impact.barOfCells(16, copper(), 250., end)

@@ -7,8 +7,9 @@ import signal
 
 import pytest
 
-from yade_mca.tasks import cli, stress_judge, stress_run
-from yade_mca.tasks.stress_judge import FAILED, HELD, REFUSED, StressCase, clear, judge, violations
+from yade_mca.tasks import cli
+from yade_mca.tasks.stress import children
+from yade_mca.tasks.stress.judge import FAILED, HELD, REFUSED, StressCase, clear, judge, violations
 
 
 @pytest.mark.parametrize('argv, word', [
@@ -78,7 +79,7 @@ def test_theProgramsOwnErrorsAreClear(plugin):
 
 
 def test_randomScenesComeFromTheSeedAlone(plugin):
-	from yade_mca.tasks.stress_random import describe
+	from yade_mca.tasks.stress.random import describe
 	first = [describe(1, k) for k in range(20)]
 	assert first == [describe(1, k) for k in range(20)] and first[7] == describe(1, 7)
 	assert first != [describe(2, k) for k in range(20)] and len({json.dumps(d) for d in first}) == 20
@@ -87,8 +88,8 @@ def test_randomScenesComeFromTheSeedAlone(plugin):
 
 
 def test_namesAreUniqueAndQuickIsAPart(plugin):
-	quick = [c.name for g in stress_run.GROUPS for c in g.cases(True, 1)]
-	full = [c.name for g in stress_run.GROUPS for c in g.cases(False, 1)]
+	quick = [c.name for g in children.GROUPS for c in g.cases(True, 1)]
+	full = [c.name for g in children.GROUPS for c in g.cases(False, 1)]
 	assert len(set(quick)) == len(quick) and len(set(full)) == len(full)
 	assert len(full) > len(quick) > 200
 
@@ -106,7 +107,7 @@ def test_smallCasesEndAsTheyShould(plugin, tmp_path, capsys):
 
 
 def test_predictedLimitOfAWeightedRimLiesBelowTheMeasuredOne(plugin):
-	cases = stress_run.allCases(True, 1)
+	cases = children.allCases(True, 1)
 	for name in ('limit/automata/weightedRim/17deg', 'limit/automata/stretched10%', 'limit/grid/hourglass4'):
 		found = cases[name].run()
 		assert 1. <= found['value'] < 1.5, name
@@ -119,9 +120,9 @@ def test_aDyingChildCostsOneCase(plugin, monkeypatch, tmp_path):
 	                  '\twith open(sys.argv[1], "a") as f: f.write(json.dumps(dict(started=name)) + "\\n")\n'
 	                  '\tif name == "deadly": os.kill(os.getpid(), %d)\n'
 	                  '\twith open(sys.argv[1], "a") as f: f.write(json.dumps(dict(name=name, outcome="held", text="", measures={})) + "\\n")\n' % signal.SIGSEGV)
-	real = stress_run.subprocess.Popen
-	monkeypatch.setattr(stress_run.subprocess, 'Popen', lambda command, **k: real([command[0], str(script)] + command[3:], **k))
-	found = list(stress_run.Children(['a', 'deadly', 'b'], True, 1))
+	real = children.subprocess.Popen
+	monkeypatch.setattr(children.subprocess, 'Popen', lambda command, **k: real([command[0], str(script)] + command[3:], **k))
+	found = list(children.Children(['a', 'deadly', 'b'], True, 1))
 	assert [(o.name, o.outcome) for o in found] == [('a', HELD), ('deadly', FAILED), ('b', HELD)]
 	assert 'SIGSEGV' in found[1].text
 

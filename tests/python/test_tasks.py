@@ -66,7 +66,7 @@ def test_wrong_options_end_in_one_line_and_status_2(toy, capsys, argv, word):
 
 def test_missing_part_is_a_usage_error():
 	with pytest.raises(UsageError, match='not part of this installation'):
-		registry.load('verify_nothing')
+		registry.load('verify.nothing')
 
 
 def test_report_decides_by_error_limit_and_finiteness():

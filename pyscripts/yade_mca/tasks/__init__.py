@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The tasks behind `pyscripts/run TASK`: `python -m yade_mca.tasks TASK ...` with YADE's interpreter.
 
-A task is a module of this package with
+A task is a module of this package, or task.py of a folder in it, with
 
     SUMMARY                              one line for the help
     addArguments(parser)                 its own options (argparse)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a result depends on besides its input: version, commit, threads, instruction level, processor."""
+import importlib
 import os
 import re
 import subprocess
-import sys
 from functools import lru_cache
 from pathlib import Path
 
@@ -12,11 +12,19 @@ SOURCE = PACKAGE.parents[1]  #: top of the source tree, when the package lies in
 
 
 @lru_cache(maxsize=None)
+def _plugin(name):
+	"""Attribute `name` of the package with the plugin loaded; None where it cannot be loaded."""
+	try:
+		return getattr(importlib.import_module('yade_mca'), name, None)
+	except ImportError:
+		return None
+
+
+@lru_cache(maxsize=None)
 def version():
-	"""Version of the loaded plugin, else of the source tree by its CMakeLists.txt; None outside one."""
-	loaded = getattr(sys.modules.get('yade_mca'), 'version', None)
-	if loaded:
-		return loaded
+	"""Version of the plugin, else of the source tree by its CMakeLists.txt; None outside one."""
+	if _plugin('version'):
+		return _plugin('version')
 	cmake = SOURCE / 'CMakeLists.txt'
 	found = re.search(r'project\([^)]*?VERSION\s+([\d.]+)', cmake.read_text()) if cmake.exists() else None
 	return found.group(1) if found else None
@@ -26,7 +34,7 @@ def version():
 def commit():
 	"""Git commit of the source tree, with '+' when files under version control were changed; outside one that of the build, or None."""
 	if not (SOURCE / '.git').exists():
-		return getattr(sys.modules.get('yade_mca'), 'commit', None)
+		return _plugin('commit')
 	git = lambda *args: subprocess.run(['git', '-C', str(SOURCE), *args], capture_output=True, text=True, timeout=20)
 	try:
 		head = git('rev-parse', 'HEAD')
@@ -49,8 +57,8 @@ def threads():
 
 
 def isa():
-	"""Instruction level of the solver library in use; None when the plugin is not loaded."""
-	info = getattr(sys.modules.get('yade.wrapper'), 'McaInfo', None)
+	"""Instruction level of the solver library in use; None when the plugin cannot be loaded."""
+	info = _plugin('McaInfo')
 	return info().isa if info else None
 
 

@@ -3,14 +3,14 @@
 import importlib
 import importlib.util
 
-#: task -> module of this package
+#: task -> module of this package; tasks of several files have a folder each
 TASKS = {
-        'penetration': 'penetration',
+        'penetration': 'penetration.task',
         'table1': 'table1',
         'study': 'study',
-        'verify': 'verify',
-        'bench': 'bench',
-        'stress': 'stress',
+        'verify': 'verify.task',
+        'bench': 'bench.task',
+        'stress': 'stress.task',
         'info': 'info',
         'check': 'check',
         'docs': 'docs',
@@ -30,8 +30,12 @@ SUMMARIES = {
         'readme': 'tables and pictures of README.md from the results of other tasks',
         'abi': 'what an installed YADE of any version has other than the plugin declares',
 }
-#: parts of `verify`, in the order in which `all` runs them; part -> module
-PARTS = {'automata': 'verify_automata', 'grid': 'verify_grid', 'interface': 'verify_interface'}
+#: parts of `verify`, in the order in which `all` runs them; part -> modules with CASES, functions of (report, want, quick) each
+PARTS = {
+        'automata': ('verify.automata_elastic', 'verify.automata_balance', 'verify.automata_roads', 'verify.automata_shocks', 'verify.automata_impact'),
+        'grid': ('verify.grid_waves', 'verify.grid_lamb', 'verify.grid_shocks', 'verify.grid_shell', 'verify.grid_cost'),
+        'interface': ('verify.interface_block', 'verify.interface_waves'),
+}
 
 
 class UsageError(Exception):
@@ -39,8 +43,12 @@ class UsageError(Exception):
 
 
 def load(module):
-	"""The module of a task or part. Raises UsageError when this installation does not have it."""
+	"""The module of a task or of a part of it. Raises UsageError when this installation does not have it."""
 	name = __package__ + '.' + module
-	if importlib.util.find_spec(name) is None:
-		raise UsageError("'%s' is not part of this installation (module %s is missing)" % (module.replace('_', ' '), name))
+	try:
+		found = importlib.util.find_spec(name)
+	except ModuleNotFoundError:  # its folder is missing
+		found = None
+	if found is None:
+		raise UsageError("'%s' is not part of this installation (module %s is missing)" % (module.split('.')[0], name))
 	return importlib.import_module(name)

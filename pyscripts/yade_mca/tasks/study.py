@@ -11,7 +11,8 @@ import os
 
 import numpy as np
 
-from . import penetration_options as options, penetration_report as results, registry
+from .penetration import options, report as results
+from . import registry
 from .attempts import Attempts
 from .cli import positive
 from .report import Report
@@ -176,7 +177,7 @@ def bars(path, found):
 
 def run(args, report, progress):
 	if args.doc:
-		from . import penetration_doc
+		from .penetration import doc as penetration_doc
 		print('made from', ', '.join(penetration_doc.write(args.doc)) or 'nothing')
 		return
 	attempt = Attempts('study')

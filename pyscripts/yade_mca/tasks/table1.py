@@ -8,10 +8,10 @@ import subprocess
 import sys
 import time
 
-from . import environment, penetration_options as options, penetration_report as results, registry
+from . import environment, registry
+from .penetration import options, report as results
 from .attempts import Attempts, inMemory
 from .cli import positive
-from .registry import UsageError
 
 SUMMARY = registry.SUMMARIES['table1']
 THICKNESSES = (15., 20., 25., 30., 35., 40.)
