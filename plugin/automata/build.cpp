@@ -308,7 +308,7 @@ void Solver::build(const std::vector<Automaton>& automata, const std::vector<Mat
 	works.assign(S.blocks.size(), {});
 	S.packAll();
 	for (size_t b = 0; b < S.blocks.size(); b++)
-		volumePass(S, b, options.volumeRule, {}, true, results[b]);
+		volumePass(S, b, options.volumeRule, {}, true, results[b]), stressPass(S, b, options.volumeRule, 0., {}, results[b], nullptr);
 	if (old) return inheritState(*old);
 	// automata that enter with a plastic history keep it; nothing else is stressed
 	for (auto& B : S.blocks)

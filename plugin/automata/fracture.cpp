@@ -14,7 +14,7 @@ double Solver::coldEnergyAt(size_t i, double J) const { return coldEnergy(store.
 template <class F> void Solver::eachBreaking(F&& f) const
 {
 	const Store& S   = store;
-	const auto   end = [&](size_t i, int k) { return LinkEnd { S.criterion[i], S.s[linkSlot(i, k)], S.J[i], S.P[i], S.strength[i] }; };
+	const auto   end = [&](size_t i, int k) { return LinkEnd { S.criterion[i], S.s[linkSlot(i, k)], S.J[i], S.mean[i], S.strength[i] }; };
 	for (int32_t b : awake) {
 		const Material& m = S.materialOf(S.blocks[b]);
 		if (!m.fracture.active()) continue;
@@ -146,7 +146,7 @@ void Solver::settleVolumes()
 		for (size_t c = first; c < last; c++)
 			C.s[c] *= Jc / S.J[i], C.tau[c] *= Jc / S.J[i];
 		S.J[i] = Jc;
-		if (heat && affine) S.P[i] = pressure(m.eos, Jc - 1.); // that of its contacts
+		if (heat && affine) S.P[i] = S.mean[i] = pressure(m.eos, Jc - 1.); // that of its contacts
 	}
 	unsettled.clear();
 }

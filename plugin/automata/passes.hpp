@@ -38,8 +38,8 @@ struct Extra {
 
 /// Pass 1: volume (5), pressure (1)-(3), pressure share (6). With init the raw sum of volume terms is stored as the state of rest.
 void volumePass(Store& S, size_t block, VolumeRule rule, const Extra& X, bool init, BlockResult& out);
-/// Pass 2: pair stresses (7)-(9), radial return (10)-(11), fracture criteria; dt = length of the last move [s].
-void stressPass(Store& S, size_t block, double dt, const Extra& X, BlockResult& out, BlockWork* work);
+/// Pass 2: pair stresses (7)-(9), radial return (10)-(11), mean pressure, fracture criteria; dt = length of the last move [s]: zero leaves the stresses.
+void stressPass(Store& S, size_t block, VolumeRule rule, double dt, const Extra& X, BlockResult& out, BlockWork* work);
 /// Mie-Grueneisen materials only: the heat of the pair viscosity of the last step goes into the internal energy.
 void viscousHeat(Store& S, size_t block, double dt, BlockWork* work);
 /// Pass 3: forces and torques.

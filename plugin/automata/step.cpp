@@ -104,9 +104,9 @@ void Solver::stresses(const Extra& X)
 		contactSpeed2 = contactTrial(store, contacts, lastMove, scratch, account);
 	}
 	if (account) std::fill(works.begin(), works.end(), BlockWork());
-	if (lastMove > 0) {
+	{
 		Timer t(timing, counters.nsStress);
-		eachAwake([&](size_t b) { stressPass(store, b, lastMove, X, results[b], account ? &works[b] : nullptr); });
+		eachAwake([&](size_t b) { stressPass(store, b, options.volumeRule, lastMove, X, results[b], account ? &works[b] : nullptr); });
 	}
 	ContactWork rubbed;
 	if (contact) {

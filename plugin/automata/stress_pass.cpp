@@ -7,8 +7,8 @@ namespace mca::automata {
 namespace {
 	/// Sums over the links (and contacts) of each automaton of a block.
 	struct Sums {
-		alignas(64) double square[blockSize], before[blockSize], both[blockSize], dilationBefore[blockSize], dilationTrial[blockSize];
-		PairSums<double>   of(int l) const { return { square[l], before[l], both[l], dilationBefore[l], dilationTrial[l] }; }
+		alignas(64) double square[blockSize], before[blockSize], both[blockSize], dilationBefore[blockSize], dilationTrial[blockSize], dilationLost[blockSize];
+		PairSums<double>   of(int l) const { return { square[l], before[l], both[l], dilationBefore[l], dilationTrial[l], dilationLost[l] }; }
 	};
 	/// Radial return of each automaton of a block.
 	struct Returns {
@@ -17,7 +17,8 @@ namespace {
 	};
 
 	/// (7)-(8): (J s), (J tau) of the step before become those before yield.
-	template <bool intact, bool mixed, bool account> MCA_INLINE void trialStresses(const BlockView& V, const Store& S, double dt, Sums& to)
+	template <bool intact, bool mixed, bool account>
+	MCA_INLINE void trialStresses(const BlockView& V, const Store& S, DilationShares share, double dt, Sums& to)
 	{
 		const double twoG = 2. * V.material.G, halfDt = 0.5 * dt, d = V.d;
 		for (int g = 0; g < blockSize; g += lanes) {
@@ -33,7 +34,7 @@ namespace {
 				gather2(V.node + 4, nodeSize, j, wj, thj);
 				Vec<v8>       r = other.position - x;
 				const Vec<v8> u = (other.velocity - v) * splat(dt);
-				v8            spin = (w + wj) * halfDt, stiff = splat(twoG);
+				v8            spin = chord((w + wj) * halfDt), stiff = splat(twoG);
 				if (mixed) // (8) with unlike arms; series rule for the stiffness
 					for (int l = 0; l < lanes; l++) {
 						const double q = arm(d, V.diameterOfAll[j[l]]);
@@ -42,7 +43,7 @@ namespace {
 					}
 				const m8 on   = holding(bits, k);
 				r             = choose<intact>(on, r, Vec<v8> { splat(d), splat(0.) });
-				const v8 dth  = pairDilation(th, thj);
+				const v8 dth  = pairDilation(th, thj, share);
 				Pair<v8> old  = V.stress(k, g);
 				old           = { old.normal * perOldJ, old.shear * perOldJ };
 				Pair<v8> now  = trialStress(old, strainIncrement(r, u, spin), dth, stiff);
@@ -54,7 +55,8 @@ namespace {
 			store(to.square + g, sums.square);
 			if (account)
 				store(to.before + g, sums.squareBefore), store(to.both + g, sums.both), store(to.dilationBefore + g, sums.dilationBefore),
-					store(to.dilationTrial + g, sums.dilationTrial);
+					store(to.dilationTrial + g, sums.dilationTrial),
+					store(to.dilationLost + g, sums.dilationLost);
 		}
 	}
 
@@ -107,7 +109,7 @@ namespace {
 
 	/// State after the return; fills factor = J times its scale.
 	template <YieldKind kind, bool account>
-	MCA_INLINE void yieldBlock(const BlockView& V, const Sums& sums, const Returns& R, double* factor, BlockWork* work)
+	MCA_INLINE void yieldBlock(const BlockView& V, const Sums& sums, const Returns& R, bool conjugate, double* factor, BlockWork* work)
 	{
 		const Yield  yield = V.material.yield;
 		const double threeG = 3. * V.material.G, perRho = 1. / V.material.eos.rho0, sixth = Lattice::cell(V.d) / nLinks;
@@ -126,7 +128,7 @@ namespace {
 				heat[l] += q, heated += q * V.cell[l];
 			}
 			if (account) {
-				const PairWork w = pairWork(sums.of(l), R.trial[l], r, V.J[l], V.dTheta[l], before, R.szz[l], szz, threeG, sixth, V.invN[l]);
+				const PairWork w = pairWork(sums.of(l), R.trial[l], r, V.J[l], V.dTheta[l], before, R.szz[l], szz, threeG, sixth, V.invN[l], conjugate && V.factor[l] > 0.);
 				plastic += w.plastic, coupling += w.coupling;
 			}
 		}
@@ -141,6 +143,30 @@ namespace {
 				sk[l] *= factor[l], tk[l] *= factor[l];
 		}
 	}
+	/// (5f), and the pushes of the affine rule with it.
+	void meanPressures(const BlockView& V)
+	{
+		const double       full = Lattice::cell(V.d);
+		alignas(64) double normals[blockSize];
+		for (int l = 0; l < blockSize; l++)
+			normals[l] = 0.;
+		for (int k = 0; k < nLinks; k++) {
+			const double* sk = V.s + k * blockSize;
+#pragma omp simd
+			for (int l = 0; l < blockSize; l++) {
+				const double weight = (V.flags[l] >> (halfShift + k)) & 1 ? 0.5 : 1.;
+				normals[l] += (V.flags[l] >> k) & 1 ? weight * sk[l] : 0.;
+			}
+		}
+#pragma omp simd
+		for (int l = 0; l < blockSize; l++) {
+			const double all = meanPressure(V.P[l], normals[l], V.J[l], V.szz[l], V.invN[l], full, V.cell[l]);
+			V.mean[l]        = V.factor[l] > 0. ? all : V.P[l];
+		}
+		for (int l = 0; l < blockSize; l++)
+			for (int c = 0; c < pushSize; c++)
+				V.push[pushSize * l + c] *= V.mean[l] * V.cell[l];
+	}
 	double fractureCriteria(const BlockView& V, const Sums& sums, const Returns& R)
 	{
 		const Criteria c(V.material.fracture);
@@ -148,7 +174,7 @@ namespace {
 #pragma omp simd reduction(max : worst)
 		for (int l = 0; l < blockSize; l++) {
 			const double one =
-				criterion(c, V.eqps[l], V.P[l], equivalentStressAfter(R.scale[l], sums.square[l] * V.invN[l], V.szz[l]), V.strength[l]);
+				criterion(c, V.eqps[l], V.mean[l], equivalentStressAfter(R.scale[l], sums.square[l] * V.invN[l], V.szz[l]), V.strength[l]);
 			V.criterion[l]   = one;
 			worst            = max(worst, V.flags[l] & linkBits ? one : 0.);
 		}
@@ -156,13 +182,13 @@ namespace {
 	}
 
 	template <YieldKind kind, bool intact, bool mixed, bool account>
-	void run(const BlockView& V, const Store& S, double dt, const Extra& X, BlockResult& out, BlockWork* work)
+	void run(const BlockView& V, const Store& S, bool affine, double dt, const Extra& X, BlockResult& out, BlockWork* work)
 	{
 		const bool         contacts = V.block.contact && X.contactSq;
 		Sums               sums;
 		Returns            R;
 		alignas(64) double factor[blockSize];
-		trialStresses<intact, mixed, account>(V, S, dt, sums);
+		trialStresses<intact, mixed, account>(V, S, affine ? ofOwn : ofBoth, dt, sums);
 		if (contacts)
 			for (int l = 0; l < blockSize; l++)
 				sums.square[l] += X.contactSq[V.base + l];
@@ -170,18 +196,22 @@ namespace {
 			for (int l = 0; l < blockSize; l++)
 				sums.both[l] += X.contactOld[V.base + l];
 		radialReturns<kind>(V, sums, dt, R);
-		yieldBlock<kind, account>(V, sums, R, factor, work);
+		yieldBlock<kind, account>(V, sums, R, affine, factor, work);
 		if (contacts) std::copy(factor, factor + blockSize, X.scale + V.base);
 		scaleLinks(V, factor);
+		if (affine) meanPressures(V);
+		else std::copy(V.P, V.P + blockSize, V.mean);
 		if (V.material.fracture.active()) out.criterion = fractureCriteria(V, sums, R);
 	}
 }
 
-void stressPass(Store& S, size_t b, double dt, const Extra& X, BlockResult& out, BlockWork* work)
+void stressPass(Store& S, size_t b, VolumeRule rule, double dt, const Extra& X, BlockResult& out, BlockWork* work)
 {
 	const BlockView V(S, b);
+	const bool      affine = rule == VolumeRule::affine;
+	if (!(dt > 0.)) return affine ? meanPressures(V) : void(std::copy(V.P, V.P + blockSize, V.mean));
 	dispatch(V.material.yield.kind, [&](auto kind) {
-		choices([&](auto intact, auto mixed, auto account) { run<kind.value, intact.value, mixed.value, account.value>(V, S, dt, X, out, work); },
+		choices([&](auto intact, auto mixed, auto account) { run<kind.value, intact.value, mixed.value, account.value>(V, S, affine, dt, X, out, work); },
 		        V.block.intact, V.block.mixed, work != nullptr);
 	});
 }

@@ -11,7 +11,7 @@ struct BlockView {
 	const double    d; ///< diameter [m]
 	const size_t    base;
 	const double *  x, *y, *vx, *vy, *omega, *cell, *invN, *strength, *diameterOfAll, *node, *pushOfAll;
-	double *        J, *dTheta, *P, *h, *factor, *rest, *szz, *eqps, *temperature, *heat, *criterion, *s, *tau, *record, *push, *fx, *fy, *torque;
+	double *        J, *dTheta, *P, *mean, *h, *factor, *rest, *szz, *eqps, *temperature, *heat, *criterion, *s, *tau, *record, *push, *fx, *fy, *torque;
 	const int32_t * flags, *neighbour;
 	BlockView(Store& S, size_t b)
 		: block(S.blocks[b])
@@ -32,6 +32,7 @@ struct BlockView {
 		, J(S.J.data() + base)
 		, dTheta(S.dTheta.data() + base)
 		, P(S.P.data() + base)
+		, mean(S.mean.data() + base)
 		, h(S.h.data() + base)
 		, factor(S.factor.data() + base)
 		, rest(S.rest.data() + base)

@@ -117,7 +117,7 @@ namespace {
 				intact ? Symmetric<double> { Lattice::spread, 0., Lattice::spread } : Symmetric<double> { L.exx[l], L.exy[l], L.eyy[l] };
 			const double            J = affineRatio(c, F, V.factor[l], V.rest[l], contactSum ? contactSum[l] : 0.), Jo = init ? J : V.J[l];
 			const PressureState     p = pressureStep(c, J, Jo, { V.P[l], hot ? V.heat[l] : 0. }, V.factor[l] > 0.);
-			const Tensor<double>    t = affinePush(c, F, V.factor[l], p.P, V.cell[l]);
+			const Tensor<double>    t = affinePush(c, F, V.factor[l]);
 			stiffest                  = max(stiffest, affineStiffness(c, J, F, e, V.factor[l], L.nearest2[l]));
 			V.dTheta[l] = dilation(J, Jo), V.J[l] = J, V.P[l] = p.P;
 			if (hot) V.heat[l] = p.e;

@@ -130,7 +130,7 @@ void McaEngine::takeResults(size_t q)
 	was.pos = Vector3r(S.x[i], S.y[i], s.se3.position[2]), was.vel = Vector3r(S.vx[i], S.vy[i], 0), was.angVel = Vector3r(0, 0, S.omega[i]);
 	was.angle = S.angle[i], was.ori = Quaternionr(AngleAxisr(was.angle, Vector3r::UnitZ()));
 	was.blocked = ~0u; // to be compared with what the solver has
-	was.pressure = S.P[i], was.volumeRatio = S.J[i], was.plasticStrain = S.eqps[i], was.temperature = S.temperature[i], was.stressZZ = S.szz[i],
+	was.pressure = S.mean[i], was.volumeRatio = S.J[i], was.plasticStrain = S.eqps[i], was.temperature = S.temperature[i], was.stressZZ = S.szz[i],
 	was.dissipated       = S.heat.empty() ? 0. : S.heat[i];
 	was.equivalentStress = s.equivalentStress, was.links = s.links, was.brokenLinks = s.brokenLinks; // follow from the rest
 }

@@ -230,7 +230,7 @@ bool McaEngine::writeBody(State& s, Same& was, size_t i) const
 	was.angVel     = Vector3r(0, 0, S.omega[i]);
 	s.se3.position = was.pos, s.se3.orientation = was.ori, s.vel = was.vel, s.angVel = was.angVel;
 	if (!m) return kept;
-	m->pressure = was.pressure = S.P[i], m->volumeRatio = was.volumeRatio = S.J[i], m->plasticStrain = was.plasticStrain = S.eqps[i],
+	m->pressure = was.pressure = S.mean[i], m->volumeRatio = was.volumeRatio = S.J[i], m->plasticStrain = was.plasticStrain = S.eqps[i],
 	m->temperature = was.temperature = S.temperature[i];
 	m->stressZZ = was.stressZZ = S.szz[i], m->equivalentStress = was.equivalentStress = solver->equivalentStress(i);
 	m->links       = was.links       = __builtin_popcount(S.flags[i] & mca::linkBits);

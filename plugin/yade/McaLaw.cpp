@@ -98,11 +98,9 @@ void McaLaw::step()
 			volume(rows[size_t(i)], rows[size_t(i)].lastContact > rows[size_t(i)].firstContact);
 		checkResults();
 		doneAt = scene->iter;
-		if (lastMove > 0) {
 #pragma omp parallel for schedule(static)
-			for (long i = 0; i < n; i++)
-				stress(rows[size_t(i)]);
-		}
+		for (long i = 0; i < n; i++)
+			lastMove > 0 ? stress(rows[size_t(i)]) : finishPressure(rows[size_t(i)]);
 		for (const Row& r : rows)
 			r.l->results = Vector3r(r.m->pressure, r.m->volumeRatio, r.m->stressZZ);
 		if (scene->trackEnergy)

@@ -39,6 +39,8 @@ void McaLaw::breakLinks()
 		const Side s = r.link[k];
 		Row&       o = rows[size_t(s.other)];
 		const int  back = mca::Lattice::opposite(k);
+		r.lost += mca::linkWeight(r.l->flags, k) * s.p->s[s.side] / r.m->volumeRatio;
+		o.lost += mca::linkWeight(o.l->flags, back) * s.p->s[1 - s.side] / o.m->volumeRatio;
 		r.l->flags = (r.l->flags & ~(1 << k)) | mca::exposedBit, o.l->flags = (o.l->flags & ~(1 << back)) | mca::exposedBit;
 		s.p->linked = false;
 		s.p->startContact(distance(r, s)); // stresses go on
@@ -124,7 +126,7 @@ void McaLaw::settleVolumes(bool account)
 		if (settling.holds) continue;
 		if (affine && heat) { // what the contacts' own volume (5) had stored is from now on part of the internal energy
 			r.m->dissipated += coldEnergyAt(r, Jc) / (r.l->cell * r.material->eos.rho0);
-			r.m->pressure = mca::pressure(r.material->eos, Jc - 1.);
+			r.l->P = r.m->pressure = mca::pressure(r.material->eos, Jc - 1.);
 		}
 		scaleStresses(r, Jc / now); // stresses go on
 		r.m->volumeRatio = Jc;

@@ -110,7 +110,7 @@ void McaLaw::takeIn(Scene* scene)
 		l.flags = S.flags[i], l.partner = partner;
 		if (!fresh) continue;
 		l.cell = S.cell[i], l.invN = S.invN[i], l.rest = S.rest[i], l.factor = S.factor[i], l.rule = int(o.volumeRule), l.diameter = r.d;
-		r.m->volumeRatio = S.J[i], r.m->pressure = S.P[i];
+		r.m->volumeRatio = S.J[i], l.P = S.P[i], r.m->pressure = S.mean[i];
 	}
 	McaPhys::linking = true;
 	try {

@@ -42,7 +42,7 @@ template <mca::EosKind law> void McaLaw::volumeBy(Row& r, bool withContacts)
 	McaLawState&                    l = *r.l;
 	const mca::VolumeConstants<law> c(*r.material, r.d);
 	const Real                 Jo = r.m->volumeRatio, contactSum = withContacts ? l.contactSum : 0.;
-	const mca::PressureState   before { r.m->pressure, r.m->dissipated };
+	const mca::PressureState   before { l.P, r.m->dissipated };
 	mca::Tensor<Real>          F = {};
 	mca::Symmetric<Real>       directions = {};
 	Real                       nearest2 = 1e300, J = 1;
@@ -58,7 +58,7 @@ template <mca::EosKind law> void McaLaw::volumeBy(Row& r, bool withContacts)
 		if constexpr (rule.value == VolumeRule::affine) {
 			J   = mca::affineRatio(c, F, l.factor, l.rest, contactSum);
 			now = step(l.factor > 0);
-			const auto push = mca::affinePush(c, F, l.factor, now.P, l.cell);
+			const auto push = mca::affinePush(c, F, l.factor);
 			l.txx = push.xx, l.txy = push.xy, l.tyx = push.yx, l.tyy = push.yy;
 			r.stiff = mca::affineStiffness(c, J, F, directions, l.factor, nearest2);
 			if (!withContacts) return;
@@ -78,21 +78,21 @@ template <mca::EosKind law> void McaLaw::volumeBy(Row& r, bool withContacts)
 		}
 	});
 	l.dTheta         = mca::dilation(J, Jo);
-	r.m->volumeRatio = J, r.m->pressure = now.P, r.m->dissipated = now.e;
+	r.m->volumeRatio = J, l.P = now.P, r.m->dissipated = now.e;
 	r.clampedNow  = mca::clamped(c.eos, J - 1.);
 	r.bad         = !mca::validVolume(J);
 	r.nearestLink = nearest2 / c.d2;
 	r.closing     = lastMove > 0 ? std::max(-l.dTheta, Real(0)) * r.d / lastMove : 0.;
 }
 
-/// (7)-(8): stresses of this side of a pair before yield.
-Pair<Real> McaLaw::trial(const Row& r, const Side& s, Pair<Real> before) const
+/// (7)-(8): stresses of this side of a pair before yield; dilation: pairDilation().
+Pair<Real> McaLaw::trial(const Row& r, const Side& s, Pair<Real> before, Real dilation) const
 {
 	const Row&      o = rows[size_t(s.other)];
 	const Real      q = mca::arm(r.d, o.d), on = r.fresh || o.fresh ? 0. : lastMove, spin = mca::pairSpin(r.motion[2], o.motion[2], q, on);
 	const Vec<Real> moved { (o.motion[0] - r.motion[0]) * on, (o.motion[1] - r.motion[1]) * on };
 	const auto      strain = mca::strainIncrement(vectorTo(*r.state, *o.state), moved, spin);
-	const auto      now    = mca::trialStress(before, strain, mca::pairDilation(r.l->dTheta, o.l->dTheta), s.p->twoG);
+	const auto      now    = mca::trialStress(before, strain, dilation, s.p->twoG);
 	s.p->s[s.side] = now.normal, s.p->tau[s.side] = now.shear;
 	return now;
 }
@@ -104,15 +104,19 @@ void McaLaw::stress(Row& r)
 	McaState&            m = *r.m;
 	const mca::Material& material = *r.material;
 	const Real           J = m.volumeRatio, dt = lastMove, threeG = 3. * material.G, perOldJ = mca::perOldRatio(l.dTheta, J);
+	const bool           affine = l.rule == int(VolumeRule::affine);
 	mca::PairSums<Real>  sums;
+	const auto           dilationOf = [&](const Side& s, mca::DilationShares share) { return mca::pairDilation(l.dTheta, rows[size_t(s.other)].l->dTheta, share); };
 	const auto           old   = [&](const Side& s) { return Pair<Real> { s.p->s[s.side] * perOldJ, s.p->tau[s.side] * perOldJ }; };
 	for (int k = 0; k < nLinks; k++) {
 		const Side& s = r.link[k];
 		if (!s.p) continue;
 		const Real weight = mca::linkWeight(l.flags, k);
 		const auto before = old(s);
-		sums.add<true>(before, trial(r, s, before), mca::pairDilation(l.dTheta, rows[size_t(s.other)].l->dTheta), weight, weight);
+		const Real dilation = dilationOf(s, affine ? mca::ofOwn : mca::ofBoth);
+		sums.add<true>(before, trial(r, s, before, dilation), dilation, weight, weight);
 	}
+	sums.dilationLost = r.lost * l.dTheta * mca::ofOwn.own;
 	vector<Pair<Real>> held; // stresses of the contacts before the step
 	Real               ofContacts = 0, bothOfContacts = 0;
 	for (int c = r.firstContact; c < r.lastContact; c++) {
@@ -122,7 +126,7 @@ void McaLaw::stress(Row& r)
 			s.p->s[s.side] = s.p->tau[s.side] = 0;
 			continue;
 		}
-		const auto now = trial(r, s, held.back());
+		const auto now = trial(r, s, held.back(), dilationOf(s, mca::ofBoth));
 		ofContacts += mca::square(now), bothOfContacts += mca::product(held.back(), now);
 	}
 	sums.square += ofContacts, sums.both += bothOfContacts;
@@ -142,7 +146,7 @@ void McaLaw::stress(Row& r)
 		m.dissipated += q;
 		r.heated = q * l.cell * material.eos.rho0;
 	}
-	const auto work = mca::pairWork(sums, sigma, back, J, l.dTheta, before, szzTrial, m.stressZZ, threeG, mca::Lattice::cell(r.d) / nLinks, l.invN);
+	const auto work = mca::pairWork(sums, sigma, back, J, l.dTheta, before, szzTrial, m.stressZZ, threeG, mca::Lattice::cell(r.d) / nLinks, l.invN, affine && l.factor > 0);
 	r.plastic = work.plastic, r.coupling = work.coupling, r.friction = 0;
 
 	const Real scale = back.scale * J;
@@ -150,9 +154,23 @@ void McaLaw::stress(Row& r)
 		if (s.p) s.p->s[s.side] *= scale, s.p->tau[s.side] *= scale;
 	for (int c = r.firstContact; c < r.lastContact; c++)
 		contactFriction(r, contacts[size_t(c)], held[size_t(c - r.firstContact)], scale);
+	finishPressure(r);
 	m.equivalentStress = mca::equivalentStressAfter(back.scale, sums.square * l.invN, m.stressZZ);
 	if (material.fracture.active())
 		l.criterion = mca::criterion(mca::Criteria(material.fracture), m.plasticStrain, m.pressure, m.equivalentStress, m.strength);
+}
+
+/// (5f), and the push of the affine rule with it.
+void McaLaw::finishPressure(Row& r) const
+{
+	McaLawState& l       = *r.l;
+	Real         normals = 0;
+	for (int k = 0; k < nLinks; k++)
+		if (const Side& s = r.link[k]; s.p) normals += mca::linkWeight(l.flags, k) * s.p->s[s.side];
+	const bool affine = l.rule == int(VolumeRule::affine) && l.factor > 0;
+	r.m->pressure     = affine ? mca::meanPressure(l.P, normals, r.m->volumeRatio, r.m->stressZZ, l.invN, mca::Lattice::cell(r.d), l.cell) : l.P;
+	const Real all    = r.m->pressure * l.cell;
+	l.txx *= all, l.txy *= all, l.tyx *= all, l.tyy *= all;
 }
 
 // No tension, Coulomb friction; what this side dissipates.

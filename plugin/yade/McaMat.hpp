@@ -18,6 +18,7 @@ public:
 		((Real, invN, 0, Attr::readonly, "1 / number of slots [-]"))
 		((Real, rest, 0, Attr::readonly, "sum of the volume rule at rest [-]"))
 		((Real, factor, 0, Attr::readonly, "affine rule: J = factor det F; 0: too few links to have a volume [-]"))
+		((Real, P, 0, Attr::readonly, "pressure of the equation of state [Pa]"))
 		((Real, dTheta, 0, Attr::readonly, "last increment of the volume strain [-]"))
 		((Real, txx, 0, Attr::readonly, "affine rule: link k is pushed by T e_k [N/m]"))
 		((Real, txy, 0, Attr::readonly, "see txx [N/m]"))

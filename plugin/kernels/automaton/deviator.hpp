@@ -22,12 +22,25 @@ template <class T> MCA_INLINE Pair<T> strainIncrement(Vec<T> r, Vec<T> u, T spin
 	const T      inv = 1. / dot(m, m);
 	return { dot(m, u) * inv, cross(m, u) * inv - spin };
 }
-/// Linear strain that goes with a dilation, mean of two automata: a third of half their sum.
-constexpr double linearShare = 1. / 6.;
+/// Shares of the dilations of two automata in the linear strain that a pair leaves out of its deviator [-].
+struct DilationShares {
+	double own, other;
+};
+/// A third of the mean of both.
+constexpr DilationShares ofBoth { 1. / 6., 1. / 6. };
+/// A third of that of the side itself: links of the affine rule. What the stress of a side does with its automaton's volume stands in meanPressure() then, and the
+/// stiffness is symmetric everywhere, rims included.
+constexpr DilationShares ofOwn { 1. / 3., 0. };
+/// 2 tan(a/2) of a turn by a, to fifth order: what strainIncrement(), on the chord of the middle of the step, sees of it.
+template <class T> MCA_INLINE T chord(T a)
+{
+	const T q = a * a * (1. / 12.);
+	return fma(fma(q * 1.2, q, q), a, a);
+}
 /// Turn of a pair in a step by the spins of both [-]: arm of the first over the distance.
-MCA_INLINE double pairSpin(double omega, double other, double arm, double dt) { return fma(omega, arm, other * (1. - arm)) * dt; }
-/// Mean linear strain that a pair takes for its two automata; own, other: dilation() [-].
-template <class T> MCA_INLINE T pairDilation(T own, T other) { return (own + other) * linearShare; }
+MCA_INLINE double pairSpin(double omega, double other, double arm, double dt) { return chord(fma(omega, arm, other * (1. - arm)) * dt); }
+/// Linear strain that a pair leaves out of its deviator; own, other: dilation() of both automata [-].
+template <class T> MCA_INLINE T pairDilation(T own, T other, DilationShares share) { return fma(share.own, own, share.other * other); }
 /// 1/J of the step before, from J now and its dilation().
 template <class T> MCA_INLINE T perOldRatio(T dilation, T J) { return (2. + dilation) / ((2. - dilation) * J); }
 /// Stress of one side before yield; before: that of the last step.
@@ -45,6 +58,7 @@ template <class T> struct PairSums {
 	T both {};           ///< of the products of the two
 	T dilationBefore {}; ///< of normal stress before times pairDilation()
 	T dilationTrial {};
+	T dilationLost {}; ///< as dilationBefore, of links that have just broken
 	/// weight: 1, 1/2 on a weighted rim; what a link that has just broken held goes on in its contact, so it has none in `holds`
 	template <bool account> MCA_INLINE void add(Pair<T> before, Pair<T> trial, T pairDilation, T weight, T holds)
 	{
@@ -52,6 +66,7 @@ template <class T> struct PairSums {
 		if (account) {
 			squareBefore += holds * mca::square(before), both += weight * product(before, trial);
 			dilationBefore += holds * before.normal * pairDilation, dilationTrial += weight * trial.normal * pairDilation;
+			dilationLost += (weight - holds) * before.normal * pairDilation;
 		}
 	}
 };
@@ -78,9 +93,10 @@ struct PairWork {
 	double coupling; ///< pair work that goes into volume change rather than into the stored deviatoric energy J sigma_eq^2/(6G); zero in a uniform field
 };
 /// sums: of links (and of contacts in `both` and `square`); szz before, trial and after; sixth = cell of the full packing / neighbours; invN = 1/slots.
+/// conjugate: meanPressure() does the work that goes into volume; a link that has just broken was in it before the step.
 MCA_INLINE PairWork pairWork(
 	const PairSums<double>& sums, double trial, const Return& r, double J, double dilation, double szzBefore, double szzTrial, double szz, double threeG,
-	double sixth, double invN)
+	double sixth, double invN, bool conjugate)
 {
 	const double before = equivalentStress(sums.squareBefore * invN, szzBefore);
 	// the stress before the step along the direction of flow: the two need not be parallel
@@ -88,6 +104,7 @@ MCA_INLINE PairWork pairWork(
 	const double along = trial > 0. ? both / trial : 0.;
 	const double pairs = sixth / invN; // volume the pairs stand for: the cell, but on weighted rims
 	const double vol   = (sums.dilationBefore + r.scale * sums.dilationTrial) * invN + 0.5 * (szzBefore + szz) * dilation * (1. / 3.);
-	return { pairs * J * 0.5 * (along + trial * r.scale) * r.dEqps, pairs * J * (vol - (threeG > 0 ? dilation * before * before / (2. * threeG) : 0.)) };
+	const double apart = conjugate ? -sums.dilationLost * invN : vol;
+	return { pairs * J * 0.5 * (along + trial * r.scale) * r.dEqps, pairs * J * (apart - (threeG > 0 ? dilation * before * before / (2. * threeG) : 0.)) };
 }
 }

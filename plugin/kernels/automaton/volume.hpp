@@ -130,12 +130,18 @@ template <EosKind law> MCA_INLINE double affineRatio(const VolumeConstants<law>&
 }
 /// The factor with which other links measure the volume J; det: linkDeterminant() of these links.
 MCA_INLINE double affineFactor(double J, double rest, double det) { return det > minVolume && J > 0. ? (J - rest) / det : 0.; }
-/// P pushes link k by affinePush() e_k [N/m]: P dV/dr, V = cell J.
-template <EosKind law> MCA_INLINE Tensor<double> affinePush(const VolumeConstants<law>& c, const Tensor<double>& sum, double factor, double P, double cell)
+/// A pressure P pushes link k by P cell affinePush() e_k [N/m]: P dV/dr, V = cell J. [1/m]
+template <EosKind law> MCA_INLINE Tensor<double> affinePush(const VolumeConstants<law>& c, const Tensor<double>& sum, double factor)
 {
-	const double         a = factor * c.perArea * P * cell;
+	const double         a = factor * c.perArea;
 	const Tensor<double> k = cofactor(sum);
 	return { a * k.xx, a * k.xy, a * k.yx, a * k.yy };
+}
+/// (5f): P and what the deviators of the automaton's own sides do with its volume [Pa]. normals = sum of weight J s over its links, full = cell of the whole
+/// packing. In a uniform field of a whole star the second part is zero.
+MCA_INLINE double meanPressure(double P, double normals, double J, double szz, double invN, double full, double cell)
+{
+	return P + full / cell * fma(normals, 2. / (3. * nLinks * J), szz / (3. * nLinks * invN));
 }
 /// stiffness(), and how much stiffer than in the perfect packing: the volume by the sum of (dJ/dr_k)^2, the pair law by the closest link. directions: sum
 /// of e_k (x) e_k; nearest2 = smallest r^2 [m2]. Covers edges and corners of free surfaces up to nu = 0.49, measured; beyond 4 what is torn and sheared.
