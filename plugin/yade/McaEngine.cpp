@@ -2,10 +2,7 @@
 #include "McaEngine.hpp"
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
-#include "McaLaw.hpp"
-#include "McaGridEngine.hpp"
 #include "McaLook.hpp"
-#include "McaTimeStepper.hpp"
 
 namespace yade {
 YADE_PLUGIN((McaEngine));
@@ -64,7 +61,8 @@ void McaEngine::checkScene(Scene* scene) const
 		if (e->dead || e.get() == this) continue;
 		if (dynamic_cast<const McaEngine*>(e.get()))
 			throw mca::Error("McaEngine: there are two in O.engines, and each would move all automata; leave one.");
-		if (dynamic_cast<const McaLaw*>(e.get()))
+		const auto* other = dynamic_cast<const McaSolverEngine*>(e.get());
+		if (other && other->movesAutomata())
 			throw mca::Error("O.engines has McaEngine and McaLaw; an automaton can be moved by one of them only.");
 		if (e->getClassName() == "NewtonIntegrator") newton = e.get();
 	}

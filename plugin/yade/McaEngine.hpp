@@ -18,6 +18,7 @@ public:
 	void bringUpToDate() override;
 	bool carriesRows() const override { return solver && solver->tiedCount() > 0; }
 	bool setsStep() const override { return adaptive && !dead; }
+	bool movesAutomata() const override { return true; }
 	void stepIsSet() override { adaptive = false; }
 	bool built() const { return bool(solver); }
 	/// Before the first step: bodies are gathered anew at the next one.

@@ -2,21 +2,22 @@
 #pragma once
 #include "McaEngine.hpp"
 #include "McaGridEngine.hpp"
+#include "McaRoles.hpp"
 #include "interface/transfer.hpp"
 #include <deque>
 
 namespace yade {
 
-class McaGridCoupler : public GlobalEngine {
+class McaGridCoupler : public GlobalEngine, public McaDriver {
 public:
 	void action() override;
 	void preSave(McaGridCoupler&);
 	void postLoad(McaGridCoupler&);
 
 	/// Finds its two sides and ties the row, once; throws before anything has moved.
-	void prepare(Scene* scene);
+	void prepare(Scene* scene) override;
 	/// Whether this coupler integrates that engine.
-	bool drives(const McaSolverEngine* engine, Scene* scene);
+	bool drives(const McaSolverEngine* engine, Scene* scene) override;
 
 	// Python
 	vector<int>      rowIds() const;

@@ -14,6 +14,7 @@ public:
 	Real criticalTimeStep() const override;
 	bool carriesRows() const override { return carries; }
 	bool setsStep() const override { return adaptive && !dead; }
+	bool usesStep() const override { return true; }
 	void stepIsSet() override { adaptive = false; }
 	/// A row is tied to it from now on.
 	void carry() { carries = true; }

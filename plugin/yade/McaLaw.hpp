@@ -13,6 +13,7 @@ namespace yade {
 class McaLaw : public McaSolverEngine {
 public:
 	void step() override;
+	bool movesAutomata() const override { return true; }
 	Real criticalTimeStep() const override { return dtLimit; }
 	void prepare(Scene* scene) override;
 	/// Forces of all pairs to the bodies, in a fixed order; ends the step. Throws mca::Error when one is not finite, before it adds any.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "McaLook.hpp"
-#include "McaGridCoupler.hpp"
-#include "McaTimeStepper.hpp"
+#include "McaRoles.hpp"
+#include "McaSolverEngine.hpp"
 #include <core/Omega.hpp>
 #include <core/PartialEngine.hpp>
 #include <pkg/common/PeriodicEngines.hpp>
@@ -19,7 +19,7 @@ bool runEndsHere(const Scene& s)
 namespace look {
 	Habit habitOf(const Engine& e)
 	{
-		if (dynamic_cast<const McaSolverEngine*>(&e) || dynamic_cast<const McaGridCoupler*>(&e) || dynamic_cast<const McaTimeStepper*>(&e))
+		if (dynamic_cast<const McaSolverEngine*>(&e) || dynamic_cast<const McaDriver*>(&e) || dynamic_cast<const McaStepGiver*>(&e))
 			return Habit::never;
 		if (dynamic_cast<const PeriodicEngine*>(&e)) return Habit::whenDue;
 		if (dynamic_cast<const PartialEngine*>(&e)) return Habit::givenIds;

@@ -197,8 +197,9 @@ bool Law2_ScGeom_McaPhys_Mca::go(shared_ptr<IGeom>& geom, shared_ptr<IPhys>& phy
 	mca::Vec<Real>        f = mca::dispatch(VolumeRule(a.rule), [&](auto rule) {
                 const auto shape = [&](Real d) { return mca::pressureShape<mca::ofContacts(rule.value)>(d, inv); };
                 if (!p.linked) {
-                        const Real press = (p.pushes(0, r2) ? a.pressureShare * shape(p.rest[0]) : 0.) + (p.pushes(1, r2) ? b.pressureShare * shape(p.rest[1]) : 0.);
-                        return mca::contactForce(r, both, inv, q, press);
+                        const Real mine = p.pushes(0, r2) ? a.pressureShare * shape(p.rest[0]) : 0.;
+                        const Real theirs = p.pushes(1, r2) ? b.pressureShare * shape(p.rest[1]) : 0.;
+                        return mca::contactForce(r, both, inv, q, mine + theirs);
                 }
                 mca::Vec<Real> push; // of the pressures, to the first body its negative
                 if (rule.value == VolumeRule::affine) push = times(mca::Tensor<Real> { a.txx + b.txx, a.txy + b.txy, a.tyx + b.tyx, a.tyy + b.tyy }, p.slot);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "McaSolverEngine.hpp"
-#include "McaGridCoupler.hpp"
-#include "McaGridEngine.hpp"
-#include "McaTimeStepper.hpp"
+#include "McaRoles.hpp"
 #include <chrono>
 #include <core/Omega.hpp>
 
@@ -75,8 +73,8 @@ void McaSolverEngine::findCoupler(Scene* scene)
 		if (e->dead) continue;
 		if (auto* s = dynamic_cast<McaSolverEngine*>(e.get())) {
 			if (s != this && s->setsStep()) other = s;
-		} else if (dynamic_cast<McaTimeStepper*>(e.get())) stepper = true;
-		auto* c = dynamic_cast<McaGridCoupler*>(e.get());
+		} else if (dynamic_cast<McaStepGiver*>(e.get())) stepper = true;
+		auto* c = dynamic_cast<McaDriver*>(e.get());
 		if (!c || !c->drives(this, scene)) continue;
 		coupled = true;
 		c->prepare(scene);
@@ -103,12 +101,13 @@ void McaSolverEngine::findCoupler(Scene* scene)
 // still choose a shorter one, unless something between the two has already used the longer.
 bool McaSolverEngine::shortenStep(Scene* scene, Real limit) const
 {
-	McaTimeStepper* stepper = nullptr;
+	McaStepGiver* stepper = nullptr;
 	for (const auto& e : scene->engines) {
 		if (e.get() == this) break;
 		if (e->dead) continue;
-		if (auto* t = dynamic_cast<McaTimeStepper*>(e.get())) stepper = t->active ? t : nullptr;
-		else if (dynamic_cast<McaGridEngine*>(e.get()) || e->getClassName() == "NewtonIntegrator") stepper = nullptr;
+		const auto* s = dynamic_cast<McaSolverEngine*>(e.get());
+		if (auto* t = dynamic_cast<McaStepGiver*>(e.get())) stepper = t->gives() ? t : nullptr;
+		else if ((s && s->usesStep()) || e->getClassName() == "NewtonIntegrator") stepper = nullptr;
 	}
 	if (!stepper) return false;
 	stepper->shorten(scene, limit, getClassName() + (label.empty() ? "" : " " + label));

@@ -24,6 +24,10 @@ public:
 	virtual bool carriesRows() const { return false; }
 	/// Sets O.dt by itself.
 	virtual bool setsStep() const { return false; }
+	/// Its bodies are automata.
+	virtual bool movesAutomata() const { return false; }
+	/// It has moved with O.dt when its turn is over: nobody may shorten the step after that.
+	virtual bool usesStep() const { return false; }
 	/// A time stepper sets O.dt from now on.
 	virtual void stepIsSet() { }
 	/// Whether a coupler of the scene drives this engine, into `coupled`; couplers tie their rows here, before anything moves.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "McaTimeStepper.hpp"
 #include <kernels/automaton/limit.hpp>
-#include "McaLaw.hpp"
-#include "McaEngine.hpp"
+#include "McaMat.hpp"
+#include "McaSolverEngine.hpp"
 #include <core/Scene.hpp>
 #include <pkg/common/Sphere.hpp>
 
@@ -47,7 +47,7 @@ void McaTimeStepper::choose(Scene* scene)
 		if (!s || s->dead) continue;
 		s->prepare(scene);
 		s->stepIsSet();
-		automata |= dynamic_cast<McaEngine*>(s) || dynamic_cast<McaLaw*>(s);
+		automata |= s->movesAutomata();
 		const Real t = s->safeCriticalTimeStep();
 		if (t < found) found = t, who = s->getClassName() + (s->label.empty() ? "" : " " + s->label);
 	}

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
+#include "McaRoles.hpp"
 #include <core/TimeStepper.hpp>
 
 namespace yade {
-class McaTimeStepper : public TimeStepper {
+class McaTimeStepper : public TimeStepper, public McaStepGiver {
 public:
 	bool isActivated() override; ///< throws when the interval is zero, by which YADE would divide
 	void computeTimeStep(Scene* scene) override;
+	bool gives() const override { return active; }
 	/// A smaller stable step has shown up in this step, before anything has moved.
-	void shorten(Scene* scene, Real found, const string& who);
+	void shorten(Scene* scene, Real found, const string& who) override;
 
 private:
 	void choose(Scene* scene);

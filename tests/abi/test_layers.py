@@ -57,6 +57,25 @@ def test_includesPointDown(folder):
 	assert not wrong, '\n'.join(wrong)
 
 
+def test_noCircleAmongTheClasses():
+	"""plugin/yade: a class (X.hpp and its X*.cpp) knows only classes below it; what they are to each other stands in McaRoles."""
+	names = sorted((p.stem for p in (PLUGIN / 'yade').glob('*.hpp')), key=len, reverse=True)
+	room = lambda stem: next(n for n in [*names, stem] if stem.startswith(n))
+	knows = {}
+	for p in sources('yade'):
+		mine = knows.setdefault(room(p.stem), set())
+		mine |= {room(Path(text).stem) for text, quoted in includes(p) if quoted and (p.parent / text).exists()} - {room(p.stem)}
+	knows.setdefault('McaLaw', set()).update(knows.pop('McaForces', set()) - {'McaLaw'})  # the second half of its step
+	floors = []
+	while knows:
+		ground = {n for n, below in knows.items() if not below & set(knows)}
+		assert ground, 'a circle among ' + ', '.join(sorted(knows))
+		floors.append(ground)
+		for n in ground:
+			del knows[n]
+	assert len(floors) > 3
+
+
 def test_theTestSeesWrongIncludes():
 	here = PLUGIN / 'kernels' / 'eos.hpp'
 	assert layerOf(here, 'boost/python.hpp', False) == layerOf(here, 'core/Scene.hpp', False) == layerOf(here, 'Eigen/Core', False) == 'stock'

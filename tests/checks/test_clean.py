@@ -70,7 +70,7 @@ def test_continuousIntegrationAddsBoth(tmp_path, tests, roots, line, status):
 	assert sum(bool(re.match(r'\d+ passed, \d+ failed', x)) for x in lines) == 1, done.stdout
 
 
-@pytest.mark.parametrize('bare, calls', [('0', ['']), ('1', ['', 'clean --limit 60']), (None, ['', 'clean (bookworm|trixie) --limit 16 --spare'])])
+@pytest.mark.parametrize('bare, calls', [('0', ['']), ('1', ['', 'clean --limit 60']), (None, ['', 'clean (bookworm|trixie) --spare --limit 16'])])
 def test_whatContinuousIntegrationCalls(tmp_path, bare, calls):
 	(tmp_path / '.ci').mkdir()
 	(tmp_path / 'tests').mkdir()
@@ -84,6 +84,22 @@ def test_whatContinuousIntegrationCalls(tmp_path, bare, calls):
 	said = re.findall('^called: (.*)$', done.stdout, re.M)
 	assert len(said) == len(calls) and all(re.fullmatch(c, s) for c, s in zip(calls, said)), done.stdout
 	assert done.stdout.splitlines()[-1] == '%d passed, 0 failed' % len(calls) and done.returncode == 0
+
+
+@pytest.mark.parametrize('minutes, limit', [(1, 16), (25, 11), (30, None)])
+def test_aSlowMachineHasNoTimeForIt(tmp_path, minutes, limit):
+	(tmp_path / '.ci').mkdir()
+	(tmp_path / 'tests').mkdir()
+	script = (ROOT / '.ci' / 'run').read_text()
+	assert 'SECONDS' in script
+	(tmp_path / '.ci' / 'run').write_text(script.replace('SECONDS', 'TAKEN'))
+	run = tmp_path / 'tests' / 'run'
+	run.write_text('#!/bin/sh\necho "called: $*"\necho "1 passed, 0 failed"\n')
+	run.chmod(0o755)
+	environment = {k: v for k, v in os.environ.items() if k != 'MCA_BARE_MACHINES'}
+	done = subprocess.run(['bash', str(tmp_path / '.ci' / 'run')], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60, env=dict(environment, TAKEN=str(60 * minutes)))
+	assert done.stdout.splitlines()[-1] == ('2 passed, 0 failed' if limit else '1 passed, 0 failed, 1 skipped') and done.returncode == 0
+	assert re.findall('--limit (.*)', done.stdout) == ([str(limit)] if limit else [])
 
 
 @pytest.mark.skipif(os.getuid() != 0, reason='only root can give a tree to somebody else')

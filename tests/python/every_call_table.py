@@ -8,7 +8,7 @@ import support
 #: YADE's own, of no effect on what is computed here
 NOT_OURS = {'timingDeltas', 'dispIndex', 'dispHierarchy', 'bases'}
 #: methods that are refused in the first scene, for a reason
-LATE = {'McaGridEngine.gauge': 'there is no gauge yet', 'Engine.__call__': 'half of a step by itself', 'McaSolverEngine': 'a base class'}
+LATE = {'McaGridEngine.gauge': 'there is no gauge yet', 'Engine.__call__': 'half of a step by itself', 'McaSolverEngine': 'a base class', 'McaDensity': 'McaLaw by its old name'}
 #: classes whose objects go with their bodies
 OF_BODIES = ('Law2_ScGeom_McaPhys_Mca', 'McaMat', 'McaState', 'State', 'FrictMat', 'ElastMat', 'Material', 'NormPhys', 'NormShearPhys', 'McaPhys')
 #: moments at which the steps may be refused without any call
