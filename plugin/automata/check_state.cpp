@@ -96,8 +96,8 @@ namespace {
 		const size_t links = n * nLinks;
 		need(S.neighbour.size() == links && S.s.size() == links && S.tau.size() == links, "the length of the links");
 		if (stopped) return;
-		for (auto v : { &S.dTheta, &S.P, &S.mean, &S.h, &S.szz, &S.temperature, &S.criterion, &S.heat, &S.fx, &S.fy, &S.torque, &S.outsideX, &S.outsideY,
-		                &S.outsideTorque, &S.s, &S.tau })
+		for (auto v : { &S.dTheta, &S.P, &S.mean, &S.h, &S.szz, &S.temperature, &S.criterion, &S.heat, &S.fx, &S.fy, &S.torque, &S.outsideX,
+		                &S.outsideY, &S.outsideTorque, &S.s, &S.tau })
 			need(finite(*v), "a stress or force");
 		need(positive(S.J) && notNegative(S.eqps), "a volume or strain");
 	}

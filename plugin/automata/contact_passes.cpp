@@ -72,8 +72,8 @@ namespace {
 		const double      touch = max(V.pushing[c], V.pushing[V.reverse[c]]), perOldJ = perOldRatio(M.dTheta[i], M.J[i]);
 		const Pair<double> old { V.s[c] * perOldJ, V.tau[c] * perOldJ };
 		const auto         strain = strainIncrement(r, v * dt, pairSpin(M.omega[i], M.omega[j], V.arm[c], dt));
-		const Pair<double> all = trialStress(old, strain, pairDilation(M.dTheta[i], M.dTheta[j], ofBoth), V.twoG[c]);
-		const Pair<double> now { touch > 0. ? all.normal : 0., touch > 0. ? all.shear : 0. };
+				  const Pair<double> all    = trialStress(old, strain, pairDilation(M.dTheta[i], M.dTheta[j], ofBoth), V.twoG[c]);
+				  const Pair<double> now { touch > 0. ? all.normal : 0., touch > 0. ? all.shear : 0. };
 		V.touch[c] = touch, V.along[c] = dot(r, v);
 		V.second[c] = old.normal, V.third[c] = old.shear; // for the account
 		V.s[c] = now.normal, V.tau[c] = now.shear;

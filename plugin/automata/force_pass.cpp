@@ -16,19 +16,27 @@ namespace {
 		return { normal, shear };
 	}
 	/// Per lane: (12) with the coefficients of the pair.
-	MCA_INLINE v8 viscosityMixed(const BlockView& V, const Store& S, const int32_t* j, v8 along, v8 invR2, v8 dij, v8 w)
+	template <VolumeRule rule> MCA_INLINE v8 viscosityMixed(const BlockView& V, const Store& S, const int32_t* j, v8 along, v8 invR2, v8 dij, v8 w)
 	{
 		v8 q;
 		for (int l = 0; l < lanes; l++) {
-			const PairViscosity c = S.pairViscosity(V.block.species, j[l]);
+			const PairViscosity c = ofLink(S.pairViscosity(V.block.species, j[l]), rule);
 			q[l] = w[l] * viscousCoefficient(along[l], invR2[l], c.linear, c.quadratic, Lattice::width(dij[l]));
 		}
 		return q;
 	}
+	/// The share of the viscosity in the pushes.
+	MCA_INLINE Tensor<v8> gatherViscous(const BlockView& V, const int32_t* j)
+	{
+		Tensor<v8> push = gatherPush(V.pushOfAll, j);
+		v8         share;
+		for (int l = 0; l < lanes; l++) share[l] = V.node[nodeSize * size_t(j[l]) + 7];
+		return { push.xx * share, push.xy * share, push.yx * share, push.yy * share };
+	}
 	template <VolumeRule rule, bool intact, bool mixed, bool viscous, bool account> void run(const BlockView& V, const Store& S, const Extra& E)
 	{
 		const double *      H = S.h.data(), *s = S.s.data(), *tau = S.tau.data(), d = V.d; // of all
-		const PairViscosity own = viscosityOf(V.material);
+		const PairViscosity own = ofLink(viscosityOf(V.material), rule);
 		int32_t             self[blockSize];
 		for (int l = 0; l < blockSize; l++)
 			self[l] = int32_t(V.base) + l;
@@ -65,12 +73,16 @@ namespace {
 				v8 along = both.normal * invR2;
 				if (viscous) {
 					const v8 closing = dot(r, other.velocity - v);
-					const v8 q = mixed ? viscosityMixed(V, S, j, closing, invR2, dij, w)
-					                   : w * viscousCoefficient(closing, invR2, own.linear, own.quadratic, Lattice::width(d));
+					const v8 q       = mixed ? viscosityMixed<rule>(V, S, j, closing, invR2, dij, w)
+								 : w * viscousCoefficient(closing, invR2, own.linear, own.quadratic, Lattice::width(d));
 					along += q;
 					if (account) ofViscosity = { fma(q, r.x, ofViscosity.x), fma(q, r.y, ofViscosity.y) };
 				}
 				if (account) ofPressure = ofPressure - press;
+				if (account && rule == VolumeRule::affine) { // what of it is viscous
+					const Vec<v8> q = choose<intact>(on, times(gatherViscous(V, self + g) + gatherViscous(V, j), k), none);
+					ofViscosity = ofViscosity - q, ofPressure = { ofPressure.x + q.x, ofPressure.y + q.y };
+				}
 				const Vec<v8> f = linkForce(r, along, both.shear * invR2, press);
 				force = { force.x + f.x, force.y + f.y };
 				if (mixed)

@@ -17,7 +17,7 @@ void Solver::limitStep()
 		const Block&       B = S.blocks[b];
 		const BlockResult& R = results[b];
 		const double       d = S.species[B.species].d, approach = lastMove > 0 ? R.closing * d / lastMove : 0.;
-		limit                = std::min(limit, stepLimit(S.materialOf(B), d, R.stiffest, meets(B) ? pressed : 0., approach, R.widest));
+		limit = std::min(limit, stepLimit(S.materialOf(B), options.volumeRule, d, R.stiffest, meets(B) ? pressed : 0., approach, R.widest));
 	}
 	double smallest = 1e300;
 	for (auto& sp : S.species)

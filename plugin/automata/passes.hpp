@@ -26,6 +26,7 @@ struct BlockWork {
 
 /// Scratch that exists only for some scenes; null where the scene does not need it.
 struct Extra {
+	double        perMove     = 0;       ///< 1/length of the last move [1/s]; 0: none yet
 	const double* contactSum  = nullptr; ///< per automaton: volume terms of its contacts
 	const double* contactSq   = nullptr; ///< per automaton: s^2 + tau^2 of its contacts [Pa2]
 	const double* contactOld  = nullptr; ///< account: products of the stresses before the step and the trial stresses
@@ -40,8 +41,8 @@ struct Extra {
 void volumePass(Store& S, size_t block, VolumeRule rule, const Extra& X, bool init, BlockResult& out);
 /// Pass 2: pair stresses (7)-(9), radial return (10)-(11), mean pressure, fracture criteria; dt = length of the last move [s]: zero leaves the stresses.
 void stressPass(Store& S, size_t block, VolumeRule rule, double dt, const Extra& X, BlockResult& out, BlockWork* work);
-/// Mie-Grueneisen materials only: the heat of the pair viscosity of the last step goes into the internal energy.
-void viscousHeat(Store& S, size_t block, double dt, BlockWork* work);
+/// Mie-Grueneisen materials only: the heat of the viscosity of the last step goes into the internal energy.
+void viscousHeat(Store& S, size_t block, VolumeRule rule, double dt, BlockWork* work);
 /// Pass 3: forces and torques.
 void forcePass(Store& S, size_t block, VolumeRule rule, const Extra& X);
 }

@@ -64,6 +64,7 @@ Extra Solver::extra()
 		for (auto v : { &scratch.old, &scratch.volX, &scratch.volY, &scratch.visX, &scratch.visY })
 			v->resize(store.size(), 0.);
 	Extra X;
+	X.perMove = lastMove > 0 ? 1. / lastMove : 0.;
 	if (contacts.size())
 		X.contactSum = scratch.sum.data(), X.contactSq = scratch.square.data(), X.contactOld = scratch.old.data(), X.scale = scratch.scale.data(),
 		X.contactFx = scratch.fx.data(), X.contactFy = scratch.fy.data(), X.contactT = scratch.torque.data();
@@ -128,13 +129,13 @@ void Solver::forces(const Extra& X)
 	eachAwake([&](size_t b) { forcePass(store, b, options.volumeRule, X); });
 }
 
-/// Where materials have an internal energy, the heat of the pair viscosity of the last step goes into it.
+/// Where materials have an internal energy, the heat of the viscosity of the last step goes into it.
 void Solver::viscousHeats()
 {
 	if (store.heat.empty() || !(lastMove > 0)) return;
 	eachAwake([&](size_t b) {
 		const Material& m = store.materialOf(store.blocks[b]);
-		if (m.eos.heats() && m.viscosity.active()) viscousHeat(store, b, lastMove, options.account ? &works[b] : nullptr);
+		if (m.eos.heats() && m.viscosity.active()) viscousHeat(store, b, options.volumeRule, lastMove, options.account ? &works[b] : nullptr);
 	});
 }
 

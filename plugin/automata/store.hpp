@@ -45,7 +45,7 @@ struct Store {
 	std::vector<int32_t> neighbour; ///< automaton at the other end, itself where there is none; there the same link is Lattice::opposite(k)
 	std::vector<double>  s, tau;                         ///< J times normal and shear pair stress of this side [Pa]
 	// records that neighbours read; rebuilt in every step, so not part of the saved state
-	std::vector<double>  node; ///< 8 per automaton: x, y, vx, vy, omega, dTheta, 0, 0
+	std::vector<double>  node; ///< 8 per automaton: x, y, vx, vy, omega, dTheta, viscous pressure, its share in push
 	std::vector<double>  push; ///< 4 per automaton, affine rule: link k is pushed by T e_k; Txx, Txy, Tyx, Tyy [N/m]
 	/// Copies motion into the records of a block.
 	void packBlock(size_t b)

@@ -7,8 +7,9 @@ namespace mca::automata {
 namespace {
 	/// Sums over the links (and contacts) of each automaton of a block.
 	struct Sums {
-		alignas(64) double square[blockSize], before[blockSize], both[blockSize], dilationBefore[blockSize], dilationTrial[blockSize], dilationLost[blockSize];
-		PairSums<double>   of(int l) const { return { square[l], before[l], both[l], dilationBefore[l], dilationTrial[l], dilationLost[l] }; }
+		alignas(64) double square[blockSize], before[blockSize], both[blockSize], dilationBefore[blockSize], dilationTrial[blockSize],
+			dilationLost[blockSize];
+		PairSums<double> of(int l) const { return { square[l], before[l], both[l], dilationBefore[l], dilationTrial[l], dilationLost[l] }; }
 	};
 	/// Radial return of each automaton of a block.
 	struct Returns {
@@ -55,8 +56,7 @@ namespace {
 			store(to.square + g, sums.square);
 			if (account)
 				store(to.before + g, sums.squareBefore), store(to.both + g, sums.both), store(to.dilationBefore + g, sums.dilationBefore),
-					store(to.dilationTrial + g, sums.dilationTrial),
-					store(to.dilationLost + g, sums.dilationLost);
+					store(to.dilationTrial + g, sums.dilationTrial), store(to.dilationLost + g, sums.dilationLost);
 		}
 	}
 
@@ -128,7 +128,9 @@ namespace {
 				heat[l] += q, heated += q * V.cell[l];
 			}
 			if (account) {
-				const PairWork w = pairWork(sums.of(l), R.trial[l], r, V.J[l], V.dTheta[l], before, R.szz[l], szz, threeG, sixth, V.invN[l], conjugate && V.factor[l] > 0.);
+				const PairWork w = pairWork(
+					sums.of(l), R.trial[l], r, V.J[l], V.dTheta[l], before, R.szz[l], szz, threeG, sixth, V.invN[l],
+					conjugate && V.factor[l] > 0.);
 				plastic += w.plastic, coupling += w.coupling;
 			}
 		}
@@ -143,13 +145,12 @@ namespace {
 				sk[l] *= factor[l], tk[l] *= factor[l];
 		}
 	}
-	/// (5f), and the pushes of the affine rule with it.
+	/// (5f), and the pushes of the affine rule with it and with the viscous pressure.
 	void meanPressures(const BlockView& V)
 	{
 		const double       full = Lattice::cell(V.d);
 		alignas(64) double normals[blockSize];
-		for (int l = 0; l < blockSize; l++)
-			normals[l] = 0.;
+		for (int l = 0; l < blockSize; l++) normals[l] = 0.;
 		for (int k = 0; k < nLinks; k++) {
 			const double* sk = V.s + k * blockSize;
 #pragma omp simd
@@ -163,9 +164,12 @@ namespace {
 			const double all = meanPressure(V.P[l], normals[l], V.J[l], V.szz[l], V.invN[l], full, V.cell[l]);
 			V.mean[l]        = V.factor[l] > 0. ? all : V.P[l];
 		}
-		for (int l = 0; l < blockSize; l++)
-			for (int c = 0; c < pushSize; c++)
-				V.push[pushSize * l + c] *= V.mean[l] * V.cell[l];
+		for (int l = 0; l < blockSize; l++) { // factor = 0: the push is zero
+			double*      record = V.record + nodeSize * l;
+			const double q = record[6], all = V.mean[l] + q;
+			record[7] = all != 0. ? q / all : 0.;
+			for (int c = 0; c < pushSize; c++) V.push[pushSize * l + c] *= all * V.cell[l];
+		}
 	}
 	double fractureCriteria(const BlockView& V, const Sums& sums, const Returns& R)
 	{
@@ -199,8 +203,10 @@ namespace {
 		yieldBlock<kind, account>(V, sums, R, affine, factor, work);
 		if (contacts) std::copy(factor, factor + blockSize, X.scale + V.base);
 		scaleLinks(V, factor);
-		if (affine) meanPressures(V);
-		else std::copy(V.P, V.P + blockSize, V.mean);
+		if (affine)
+			meanPressures(V);
+		else
+			std::copy(V.P, V.P + blockSize, V.mean);
 		if (V.material.fracture.active()) out.criterion = fractureCriteria(V, sums, R);
 	}
 }
@@ -211,7 +217,8 @@ void stressPass(Store& S, size_t b, VolumeRule rule, double dt, const Extra& X, 
 	const bool      affine = rule == VolumeRule::affine;
 	if (!(dt > 0.)) return affine ? meanPressures(V) : void(std::copy(V.P, V.P + blockSize, V.mean));
 	dispatch(V.material.yield.kind, [&](auto kind) {
-		choices([&](auto intact, auto mixed, auto account) { run<kind.value, intact.value, mixed.value, account.value>(V, S, affine, dt, X, out, work); },
+		choices([&](auto intact, auto mixed,
+		            auto account) { run<kind.value, intact.value, mixed.value, account.value>(V, S, affine, dt, X, out, work); },
 		        V.block.intact, V.block.mixed, work != nullptr);
 	});
 }

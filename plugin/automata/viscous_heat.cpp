@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include "../kernels/automaton/force.hpp"
 #include "passes.hpp"
 
 namespace mca::automata {
 
-void viscousHeat(Store& S, size_t b, double dt, BlockWork* work)
+void viscousHeat(Store& S, size_t b, VolumeRule rule, double dt, BlockWork* work)
 {
 	const Block&    B = S.blocks[b];
 	const Material& m = S.materialOf(B);
@@ -11,13 +12,13 @@ void viscousHeat(Store& S, size_t b, double dt, BlockWork* work)
 	double          sum = 0;
 	for (int l = 0; l < B.count; l++) {
 		const size_t i = b * blockSize + l;
-		double       q = 0;
+		double       q = viscousWork(S.node[i * nodeSize + 6], S.dTheta[i], S.J[i]) * S.cell[i];
 		for (int k = 0; k < nLinks; k++) {
 			if (!holds(S.flags[i], k)) continue;
 			const int32_t       j = S.neighbour[linkSlot(i, k)];
 			const Vec<double>   r { S.x[j] - S.x[i], S.y[j] - S.y[i] }, v { S.vx[j] - S.vx[i], S.vy[j] - S.vy[i] };
 			const double        along = dot(r, v);
-			const PairViscosity c = B.mixed ? S.pairViscosity(B.species, j) : viscosityOf(m);
+			const PairViscosity c     = ofLink(B.mixed ? S.pairViscosity(B.species, j) : viscosityOf(m), rule);
 			q += 0.5 * linkWeight(S.flags[i], k)
 				* viscousCoefficient(along, 1. / dot(r, r), c.linear, c.quadratic, Lattice::width(S.restDistance(i, j))) * along
 				* dt; // this side's half

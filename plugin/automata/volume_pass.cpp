@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Pass 1: volume of each automaton from its links, pressure, and what it pushes its neighbours with.
+#include "../kernels/automaton/force.hpp"
 #include "passes.hpp"
 #include "view.hpp"
 
@@ -75,6 +76,7 @@ namespace {
 		alignas(64) double xx[blockSize], xy[blockSize], yx[blockSize], yy[blockSize]; ///< of r (x) e_k [m]
 		alignas(64) double exx[blockSize], exy[blockSize], eyy[blockSize];             ///< of e_k (x) e_k; not filled where all links hold
 		alignas(64) double nearest2[blockSize];                                        ///< smallest r^2 [m2]
+		alignas(64) double viscous[blockSize];                                         ///< viscous pressure [Pa]; of the state, not of a sum
 	};
 	template <bool intact> MCA_INLINE void sumLinks(const BlockView& V, LinkSums& to)
 	{
@@ -97,10 +99,11 @@ namespace {
 			if (!intact) store(to.exx + g, e.xx), store(to.exy + g, e.xy), store(to.eyy + g, e.yy);
 		}
 	}
-	template <bool intact, EosKind law> void affineRule(const BlockView& V, const double* contactSum, bool init, BlockResult& out)
+	template <bool intact, EosKind law> void affineRule(const BlockView& V, const double* contactSum, double perMove, bool init, BlockResult& out)
 	{
 		constexpr bool        hot = LawOf<law>::heats;
 		const VolumeConstants<law> c(V.material, V.d);
+		const BulkViscosity        viscosity(V.material, V.d, perMove);
 		LinkSums              L;
 		sumLinks<intact>(V, L);
 		if (init)
@@ -117,9 +120,11 @@ namespace {
 				intact ? Symmetric<double> { Lattice::spread, 0., Lattice::spread } : Symmetric<double> { L.exx[l], L.exy[l], L.eyy[l] };
 			const double            J = affineRatio(c, F, V.factor[l], V.rest[l], contactSum ? contactSum[l] : 0.), Jo = init ? J : V.J[l];
 			const PressureState     p = pressureStep(c, J, Jo, { V.P[l], hot ? V.heat[l] : 0. }, V.factor[l] > 0.);
-			const Tensor<double>    t = affinePush(c, F, V.factor[l]);
-			stiffest                  = max(stiffest, affineStiffness(c, J, F, e, V.factor[l], L.nearest2[l]));
+			const Tensor<double>    t     = affinePush(c, F, V.factor[l]);
+			const double            slope = volumeSlope(c, F, e, V.factor[l]);
+			stiffest                      = max(stiffest, affineStiffness(c, J, slope, L.nearest2[l]));
 			V.dTheta[l] = dilation(J, Jo), V.J[l] = J, V.P[l] = p.P;
+			L.viscous[l] = viscosity.pressure(V.dTheta[l], slope);
 			if (hot) V.heat[l] = p.e;
 			L.xx[l] = t.xx, L.xy[l] = t.xy, L.yx[l] = t.yx, L.yy[l] = t.yy;
 			closing = max(closing, -V.dTheta[l]);
@@ -130,6 +135,7 @@ namespace {
 		}
 		for (int g = 0; g < blockSize; g += lanes)
 			scatter4(V.push + pushSize * g, pushSize, load(L.xx + g), load(L.xy + g), load(L.yx + g), load(L.yy + g));
+		for (int l = 0; l < blockSize; l++) V.record[nodeSize * l + 6] = L.viscous[l];
 		if (contactSum) { // contacts have a volume of their own
 #pragma omp simd reduction(max : stiffest) reduction(+ : clampCount)
 			for (int l = 0; l < blockSize; l++) {
@@ -151,7 +157,7 @@ void volumePass(Store& S, size_t b, VolumeRule rule, const Extra& X, bool init, 
 	dispatch(V.material.eos.kind, [&](auto law) {
 		dispatch(rule, [&](auto r) {
 			if constexpr (r.value == VolumeRule::affine)
-				choices([&](auto intact) { affineRule<intact.value, law.value>(V, contactSum, init, out); }, V.block.intact);
+				choices([&](auto intact) { affineRule<intact.value, law.value>(V, contactSum, X.perMove, init, out); }, V.block.intact);
 			else
 				choices([&](auto intact, auto mixed) { sumRule<r.value, intact.value, mixed.value, law.value>(V, S, contactSum, init, out); },
 				        V.block.intact, V.block.mixed);

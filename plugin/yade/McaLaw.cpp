@@ -42,7 +42,7 @@ void McaLaw::checkResults()
 	for (auto& r : rows)
 		if (meets(r)) pressed = std::max(pressed, r.stiff * r.material->eos.rho0);
 	for (auto& r : rows)
-		r.limit = mca::stepLimit(*r.material, r.d, r.stiff, meets(r) ? pressed : 0., r.closing, r.m->volumeRatio);
+		r.limit = mca::stepLimit(*r.material, mca::VolumeRule(r.l->rule), r.d, r.stiff, meets(r) ? pressed : 0., r.closing, r.m->volumeRatio);
 	for (auto& r : rows) {
 		if (r.bad) {
 			std::ostringstream o;
@@ -99,8 +99,7 @@ void McaLaw::step()
 		checkResults();
 		doneAt = scene->iter;
 #pragma omp parallel for schedule(static)
-		for (long i = 0; i < n; i++)
-			lastMove > 0 ? stress(rows[size_t(i)]) : finishPressure(rows[size_t(i)]);
+		for (long i = 0; i < n; i++) lastMove > 0 ? stress(rows[size_t(i)]) : finishPressure(rows[size_t(i)]);
 		for (const Row& r : rows)
 			r.l->results = Vector3r(r.m->pressure, r.m->volumeRatio, r.m->stressZZ);
 		if (scene->trackEnergy)

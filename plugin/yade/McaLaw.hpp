@@ -99,6 +99,7 @@ public:
 		Side                 link[mca::nLinks];
 		int                  firstContact = 0, lastContact = 0; ///< in contacts, ascending ids
 		Real                 lost      = 0;                     ///< normal stress of links that have broken in this step, with their weights [Pa]
+		Real                 viscous   = 0;                     ///< viscous pressure (12a) [Pa]
 		Real                 curvature = 0;                     ///< second difference of the volume
 		Vector3r             motion = Vector3r::Zero(); ///< velocity [m/s] and spin [rad/s] of the last move
 		bool                 fresh  = false;            ///< has made no move
@@ -153,8 +154,8 @@ private:
 	void                       volume(Row&, bool withContacts);
 	template <mca::EosKind law> void       volumeBy(Row&, bool withContacts);
 	void                       stress(Row&);
-	mca::Pair<Real>            trial(const Row&, const Side&, mca::Pair<Real> before, Real dilation) const;
-	void                       finishPressure(Row&) const;
+	mca::Pair<Real>                        trial(const Row&, const Side&, mca::Pair<Real> before, Real dilation) const;
+	void                                   finishPressure(Row&) const;
 	void                       contactFriction(Row&, const Side&, mca::Pair<Real> before, Real scale);
 	void                       scaleStresses(const Row&, Real ratio);
 	void                       checkResults();

@@ -42,7 +42,7 @@ template <mca::EosKind law> void McaLaw::volumeBy(Row& r, bool withContacts)
 	McaLawState&                    l = *r.l;
 	const mca::VolumeConstants<law> c(*r.material, r.d);
 	const Real                 Jo = r.m->volumeRatio, contactSum = withContacts ? l.contactSum : 0.;
-	const mca::PressureState   before { l.P, r.m->dissipated };
+	const mca::PressureState        before { l.P, r.m->dissipated };
 	mca::Tensor<Real>          F = {};
 	mca::Symmetric<Real>       directions = {};
 	Real                       nearest2 = 1e300, J = 1;
@@ -60,7 +60,9 @@ template <mca::EosKind law> void McaLaw::volumeBy(Row& r, bool withContacts)
 			now = step(l.factor > 0);
 			const auto push = mca::affinePush(c, F, l.factor);
 			l.txx = push.xx, l.txy = push.xy, l.tyx = push.yx, l.tyy = push.yy;
-			r.stiff = mca::affineStiffness(c, J, F, directions, l.factor, nearest2);
+			const Real slope = mca::volumeSlope(c, F, directions, l.factor);
+			r.stiff          = mca::affineStiffness(c, J, slope, nearest2);
+			r.viscous        = mca::BulkViscosity(*r.material, r.d, lastMove > 0 ? 1. / lastMove : 0.).pressure(mca::dilation(J, Jo), slope);
 			if (!withContacts) return;
 			const Real Jc = mca::contactRatio(contactSum); // contacts have a volume of their own
 			l.pressureShare       = mca::pressureShare<mca::ofContacts(rule.value)>(mca::pressure<law>(c.eos, Jc - 1.), Jc, l.cell * (1. / nLinks));
@@ -106,7 +108,7 @@ void McaLaw::stress(Row& r)
 	const Real           J = m.volumeRatio, dt = lastMove, threeG = 3. * material.G, perOldJ = mca::perOldRatio(l.dTheta, J);
 	const bool           affine = l.rule == int(VolumeRule::affine);
 	mca::PairSums<Real>  sums;
-	const auto           dilationOf = [&](const Side& s, mca::DilationShares share) { return mca::pairDilation(l.dTheta, rows[size_t(s.other)].l->dTheta, share); };
+	const auto dilationOf = [&](const Side& s, mca::DilationShares share) { return mca::pairDilation(l.dTheta, rows[size_t(s.other)].l->dTheta, share); };
 	const auto           old   = [&](const Side& s) { return Pair<Real> { s.p->s[s.side] * perOldJ, s.p->tau[s.side] * perOldJ }; };
 	for (int k = 0; k < nLinks; k++) {
 		const Side& s = r.link[k];
@@ -146,7 +148,8 @@ void McaLaw::stress(Row& r)
 		m.dissipated += q;
 		r.heated = q * l.cell * material.eos.rho0;
 	}
-	const auto work = mca::pairWork(sums, sigma, back, J, l.dTheta, before, szzTrial, m.stressZZ, threeG, mca::Lattice::cell(r.d) / nLinks, l.invN, affine && l.factor > 0);
+	const auto work = mca::pairWork(
+		sums, sigma, back, J, l.dTheta, before, szzTrial, m.stressZZ, threeG, mca::Lattice::cell(r.d) / nLinks, l.invN, affine && l.factor > 0);
 	r.plastic = work.plastic, r.coupling = work.coupling, r.friction = 0;
 
 	const Real scale = back.scale * J;
@@ -160,7 +163,7 @@ void McaLaw::stress(Row& r)
 		l.criterion = mca::criterion(mca::Criteria(material.fracture), m.plasticStrain, m.pressure, m.equivalentStress, m.strength);
 }
 
-/// (5f), and the push of the affine rule with it.
+/// (5f), and the push of the affine rule with it and with the viscous pressure.
 void McaLaw::finishPressure(Row& r) const
 {
 	McaLawState& l       = *r.l;
@@ -169,7 +172,8 @@ void McaLaw::finishPressure(Row& r) const
 		if (const Side& s = r.link[k]; s.p) normals += mca::linkWeight(l.flags, k) * s.p->s[s.side];
 	const bool affine = l.rule == int(VolumeRule::affine) && l.factor > 0;
 	r.m->pressure     = affine ? mca::meanPressure(l.P, normals, r.m->volumeRatio, r.m->stressZZ, l.invN, mca::Lattice::cell(r.d), l.cell) : l.P;
-	const Real all    = r.m->pressure * l.cell;
+	const Real sum = r.m->pressure + r.viscous, all = sum * l.cell;
+	l.viscousShare = sum != 0 ? r.viscous / sum : 0.;
 	l.txx *= all, l.txy *= all, l.tyx *= all, l.tyy *= all;
 }
 

@@ -193,7 +193,8 @@ bool Law2_ScGeom_McaPhys_Mca::go(shared_ptr<IGeom>& geom, shared_ptr<IPhys>& phy
 	const Real            w = p.linked && p.half ? 0.5 : 1., area = mca::pairArea(w, p.d),
 		   along = mca::dot(r, mca::Vec<Real> { sb.vel[0] - sa.vel[0], sb.vel[1] - sa.vel[1] });
 	const mca::Pair<Real> both { area * (p.s[0] + p.s[1]), area * (p.tau[0] + p.tau[1]) };
-	const Real            q = w * mca::viscousCoefficient(along, inv, p.viscLinear, p.viscQuadratic, Lattice::width(p.d));
+	const auto c = p.linked ? mca::ofLink({ p.viscLinear, p.viscQuadratic }, VolumeRule(a.rule)) : mca::PairViscosity { p.viscLinear, p.viscQuadratic };
+	const Real q = w * mca::viscousCoefficient(along, inv, c.linear, c.quadratic, Lattice::width(p.d));
 	mca::Vec<Real>        f = mca::dispatch(VolumeRule(a.rule), [&](auto rule) {
                 const auto shape = [&](Real d) { return mca::pressureShape<mca::ofContacts(rule.value)>(d, inv); };
                 if (!p.linked) {
@@ -209,6 +210,12 @@ bool Law2_ScGeom_McaPhys_Mca::go(shared_ptr<IGeom>& geom, shared_ptr<IPhys>& phy
 	p.force       = Vector3r(f.x, f.y, 0);
 	p.torque      = Vector2r(mca::arm(a.diameter, b.diameter), mca::arm(b.diameter, a.diameter)) * both.shear;
 	p.heatRate    = q * along, p.viscousForce = Vector2r(q * dx, q * dy);
+	if (p.linked && VolumeRule(a.rule) == VolumeRule::affine) {
+		const Real           A = a.viscousShare, B = b.viscousShare;
+		const mca::Vec<Real> v =
+			times(mca::Tensor<Real> { A * a.txx + B * b.txx, A * a.txy + B * b.txy, A * a.tyx + B * b.tyx, A * a.tyy + B * b.tyy }, p.slot);
+		p.viscousForce -= Vector2r(v.x, v.y);
+	}
 	const Vector3r n(dx * std::sqrt(inv), dy * std::sqrt(inv), 0);
 	p.normalForce = -p.force.dot(n) * n;
 	p.shearForce  = -p.force - p.normalForce;

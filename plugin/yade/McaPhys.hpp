@@ -51,7 +51,7 @@ public:
 		((Vector3r, force, Vector3r::Zero(), Attr::readonly, "force of this step on the first body, the second has its negative [N/m]"))
 		((Vector2r, torque, Vector2r::Zero(), Attr::readonly, "torque about z on each body [N]"))
 		((Real, heatRate, 0, Attr::readonly, "power of the pair viscosity [W/m]"))
-		((Vector2r, viscousForce, Vector2r::Zero(), Attr::readonly, "share of the pair viscosity in force [N/m]"))
+		((Vector2r, viscousForce, Vector2r::Zero(), Attr::readonly, "share of the viscosity in force [N/m]"))
 		,
 		createIndex();
 	)

@@ -25,7 +25,7 @@ def shock():
 	"""Piston into copper, U = 0.1 c0, rows along the motion: shock speed [m/s] and pressure [Pa] over the exact ones."""
 	from yade_mca import exact, scenes
 	from yade_mca.tasks.verify import automata_shocks as shocks
-	m = shocks.material('OFHC_Cu', eos='shockAdiabat', yieldModel='perfect', viscosity=shocks.SMOOTH)
+	m = shocks.material('OFHC_Cu', eos='shockAdiabat', yieldModel='perfect')
 	m.yieldStress = 0.01 * m.density * m.bulkSoundSpeed**2
 	up, columns = 0.1 * m.bulkSoundSpeed, 120
 	ref = exact.piston(m.density, m.bulkSoundSpeed, m.hugoniotSlope, m.shearModulus, m.yieldStress, up)

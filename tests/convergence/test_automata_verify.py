@@ -21,7 +21,7 @@ def cases(group, only, quick=True):
 
 @pytest.mark.parametrize('group, only', [(elastic.uniform, 'uniform'), (elastic.rotation, 'rotation'), (elastic.phaseSpeeds, 'phaseSpeed'), (elastic.stableStep, 'stableStep'),
                                          (balance.reaction, 'reaction'), (balance.longRun, 'longRun'), (roads.roads, 'roads'), (shocks.hugoniot, 'affine/along/U0.05'),
-                                         (shocks.hugoniot, 'affineSmooth/across/U0.20'), (shocks.precursor, '4340'), (shocks.impact, 'smooth'), (impact.taylor, 'taylor'),
+                                         (shocks.hugoniot, 'affine/across/U0.20'), (shocks.precursor, '4340'), (shocks.impact, 'impact'), (impact.taylor, 'taylor'),
                                          (impact.spall, 'depth60d')], ids=lambda v: v if isinstance(v, str) else v.__name__)
 def test_group(group, only):
 	report = cases(group, only)

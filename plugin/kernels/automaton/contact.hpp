@@ -58,7 +58,8 @@ MCA_INLINE ContactWork contactWork(const ContactSide& c, Pair<double> after, dou
 	// the radial return took (so + s)(st - s0) with the stiffness of the pair; booked as plastic with the links: (so + s0)(st - s0) with the owner's own
 	const double plastic = (perG * (so + s) - perOwn * (so + s0)) * (st - s0) + (perG * (to + t) - perOwn * (to + t0)) * (tt - t0);
 	// as for links: pair work that goes into volume change
-	const double coupling = area * 0.5 * (so + s) * pairDilation(own, other, ofBoth) - own * held, rubbed = perG * ((so + s) * (s0 - s) + (to + t) * (t0 - t));
+	const double coupling = area * 0.5 * (so + s) * pairDilation(own, other, ofBoth) - own * held,
+		     rubbed   = perG * ((so + s) * (s0 - s) + (to + t) * (t0 - t));
 	return { c.touches ? rubbed : held, c.touches ? coupling : 0., c.touches ? plastic : 0. };
 }
 }

@@ -28,8 +28,8 @@ struct DilationShares {
 };
 /// A third of the mean of both.
 constexpr DilationShares ofBoth { 1. / 6., 1. / 6. };
-/// A third of that of the side itself: links of the affine rule. What the stress of a side does with its automaton's volume stands in meanPressure() then, and the
-/// stiffness is symmetric everywhere, rims included.
+/// A third of that of the side itself: links of the affine rule. What the stress of a side does with its automaton's volume stands in meanPressure() then, and
+/// the stiffness is symmetric everywhere, rims included.
 constexpr DilationShares ofOwn { 1. / 3., 0. };
 /// 2 tan(a/2) of a turn by a, to fifth order: what strainIncrement(), on the chord of the middle of the step, sees of it.
 template <class T> MCA_INLINE T chord(T a)

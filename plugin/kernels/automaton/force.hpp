@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Force of a pair from the pressures and stresses of both sides, and its viscosity. Formulation, equations (6) and (12).
+// Force of a pair from the pressures and stresses of both sides, and artificial viscosity. Formulation, equations (6), (12) and (12a).
 // r = x_j - x_i; forces are those on i, j has their negatives.
 #pragma once
 #include "deviator.hpp"
+#include "volume.hpp"
 
 namespace mca {
 
@@ -27,6 +28,27 @@ MCA_INLINE PairViscosity viscosityOf(const Material& a, const Material& b)
 	const PairViscosity p = viscosityOf(a), q = viscosityOf(b);
 	return { min(p.linear, q.linear), min(p.quadratic, q.quadratic) };
 }
+/// Of a link: in the affine rule the quadratic part is that of the volume, (12a). The linear one stays beside it: links of a material with little strength
+/// collapse without, at unchanged volume.
+MCA_INLINE PairViscosity ofLink(PairViscosity p, VolumeRule rule) { return { p.linear, rule == VolumeRule::affine ? 0. : p.quadratic }; }
+/// (12a): viscous pressure of an automaton of the affine rule.
+struct BulkViscosity {
+	double linear, quadratic; ///< times the increment of the volume strain and its square: over one move [Pa]
+	/// perMove = 1/length of the last move [1/s]; zero: no viscosity
+	BulkViscosity(const Material& m, double d, double perMove)
+		: linear(m.viscosity.linear * m.eos.rho0 * m.eos.c0 * (d * perMove))
+		, quadratic(m.viscosity.quadratic * m.eos.rho0 * sqr(d * perMove))
+	{
+	}
+	/// slope: volumeSlope(); the length over which a volume is measured shrinks with it, and so the damping stays that of the perfect packing.
+	double pressure(double dilation, double slope) const
+	{
+		const double a = min(dilation, 0.), per = 1. / slope;
+		return fma(quadratic * per * a, a, -linear * std::sqrt(per) * a);
+	}
+};
+/// Its heat over a move, per volume at rest [J/m3].
+MCA_INLINE double viscousWork(double q, double dilation, double J) { return -2. * q * J * dilation / (2. + dilation); }
 /// Pairs of these materials have the same constants.
 inline bool samePairs(const Material& a, const Material& b)
 {

@@ -3,29 +3,41 @@
 #pragma once
 #include "../lattice.hpp"
 #include "../material.hpp"
+#include "volume.hpp"
 
 namespace mca {
 
 /// Largest stable step [s] of the hexagonal packing (13), d [m]: the rotation of an automaton against its neighbours has omega^2 = 32 G/(rho d^2), which limits
 /// the step for Poisson ratios below 0.48; sound waves limit it to 1.65 d/cP, less with viscosity. cP with the tangent at the present state, cS [m/s];
-/// zeta = viscous damping ratio c1 + c2 |dv|/c [-].
+/// zeta = dampingRatio() [-].
 inline double stableStep(double d, double cP, double cS, double zeta)
 {
 	const double sound = 1.65 * d / cP * (std::sqrt(1. + zeta * zeta) - zeta);
 	return cS > 0. ? min(sound, 0.35355339059327376 * d / cS) : sound;
 }
+/// Damping ratio of the fastest sound wave [-]; cP with the tangent at the present state, approach = d |theta'| [m/s]. The operator of the volume has the
+/// largest eigenvalue 1.377/d^2, the fastest wave omega = 1.212 cP/d: hence the share of (12a), which has 2 c2 as the slope of its quadratic part. Links damp
+/// by c1 at rest, and no more where the tangent has become stiffer.
+inline double dampingRatio(const Material& m, VolumeRule rule, double cP, double approach)
+{
+	const Viscosity& v = m.viscosity;
+	if (rule != VolumeRule::affine) return v.active() ? v.linear + v.quadratic * approach / cP : 0.;
+	constexpr double ofVolume = 1.377 / (2. * 1.212);
+	return (v.linear * m.cP() + ofVolume * (v.linear * m.eos.c0 + 2. * v.quadratic * approach)) / cP;
+}
 /// At a state: stiff = stiffness() [m2/s2], pressed = stiffness of the stiffest that meets something else [Pa], 0 for who meets nobody: its pressure moves
 /// lighter neighbours, too, from one side. approach = speed with which neighbours close in [m/s]. What turns an automaton against its neighbours grows with J
 /// (`widest`): shear stresses are those of the present volume.
-inline double stepLimit(const Material& m, double d, double stiff, double pressed, double approach, double widest)
+inline double stepLimit(const Material& m, VolumeRule rule, double d, double stiff, double pressed, double approach, double widest)
 {
 	const double cP = std::sqrt(0.5 * (stiff + max(stiff, pressed / m.eos.rho0)));
-	return stableStep(d, cP, m.cS() * std::sqrt(max(widest, 1.)), m.viscosity.active() ? m.viscosity.linear + m.viscosity.quadratic * approach / cP : 0.);
+	return stableStep(d, cP, m.cS() * std::sqrt(max(widest, 1.)), dampingRatio(m, rule, cP, approach));
 }
 /// Before anything has moved; J: volume ratio.
 inline double stepLimitAtRest(const Material& m, double d, double J = 1.)
 {
-	return stableStep(d * min(1., J), longitudinalSpeed(m.eos, m.G, J - 1.), m.cS(), m.viscosity.linear);
+	const double cP = longitudinalSpeed(m.eos, m.G, J - 1.);
+	return stableStep(d * min(1., J), cP, m.cS(), dampingRatio(m, VolumeRule::affine, cP, 0.));
 }
 /// Pairs that meet: no more than an eighth of their distance in a step. speed2: square of the largest relative speed [m2/s2].
 inline double stepLimitOfContacts(double d, double speed2) { return 0.125 * d / std::sqrt(speed2); }

@@ -143,13 +143,17 @@ MCA_INLINE double meanPressure(double P, double normals, double J, double szz, d
 {
 	return P + full / cell * fma(normals, 2. / (3. * nLinks * J), szz / (3. * nLinks * invN));
 }
-/// stiffness(), and how much stiffer than in the perfect packing: the volume by the sum of (dJ/dr_k)^2, the pair law by the closest link. directions: sum
-/// of e_k (x) e_k; nearest2 = smallest r^2 [m2]. Covers edges and corners of free surfaces up to nu = 0.49, measured; beyond 4 what is torn and sheared.
-template <EosKind law>
-MCA_INLINE double affineStiffness(const VolumeConstants<law>& c, double J, const Tensor<double>& F, const Symmetric<double>& e, double factor, double nearest2)
+/// Sum of (dJ/dr_k)^2 over the links, over that of the perfect packing, at least 1 [-]: how much more the volume feels the motion of neighbours. directions:
+/// sum of e_k (x) e_k.
+template <EosKind law> MCA_INLINE double volumeSlope(const VolumeConstants<law>& c, const Tensor<double>& F, const Symmetric<double>& e, double factor)
 {
 	const double spread = e.xx * (F.yy * F.yy + F.yx * F.yx) - 2. * e.xy * (F.yy * F.xy + F.yx * F.xx) + e.yy * (F.xy * F.xy + F.xx * F.xx);
-	const double one = max(factor * factor * spread * c.perArea * (1. / nLinks), 1.), bulk = max(min(one * one, 4.), one);
-	return stiffness<law>(c, J, bulk, max(0.5 * c.d2 / nearest2, 1.));
+	return max(factor * factor * spread * c.perArea * (1. / nLinks), 1.);
+}
+/// stiffness(), and how much stiffer than in the perfect packing: the volume by its slope, the pair law by the closest link, nearest2 = smallest r^2 [m2].
+/// Covers edges and corners of free surfaces up to nu = 0.49, measured; beyond 4 what is torn and sheared.
+template <EosKind law> MCA_INLINE double affineStiffness(const VolumeConstants<law>& c, double J, double slope, double nearest2)
+{
+	return stiffness<law>(c, J, max(min(slope * slope, 4.), slope), max(0.5 * c.d2 / nearest2, 1.));
 }
 }
