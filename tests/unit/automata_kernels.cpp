@@ -214,6 +214,75 @@ TEST(AutomataPair, ViscosityStepAndEquivalentStress)
 	EXPECT_NEAR(stableStep(1., 2., 1.9, 0.), 1 / (std::sqrt(8.) * 1.9), 1e-15); // 2/omega, omega^2 = 32 G/(rho d^2)
 }
 
+TEST(AutomataPair, RigidTurnMakesNoStrain)
+{
+	for (double a : { 1e-6, 0.01, 0.05, 0.2 }) {
+		EXPECT_NEAR(chord(a), 2 * std::tan(0.5 * a), 1.01 * 17. / 20160. * std::pow(a, 7) + 1e-16 * a) << a;
+		const Vec<double> old { 1., 0.3 }, now { std::cos(a) * old.x - std::sin(a) * old.y, std::sin(a) * old.x + std::cos(a) * old.y };
+		const auto        e = strainIncrement(now, now - old, pairSpin(a, a, 0.4, 1.));
+		EXPECT_NEAR(e.normal, 0., 1e-15) << a;
+		EXPECT_NEAR(e.shear, 0., std::pow(a, 7) * 1e-3 + 1e-15) << a;
+	}
+}
+
+// (5f) is minus the derivative of the energy of the sides by the own dilation, and nothing in a uniform field of a whole star.
+TEST(AutomataPair, MeanPressureIsTheConjugateOfTheOwnDilation)
+{
+	std::mt19937                           r(7);
+	std::uniform_real_distribution<double> u(-1e-3, 1e-3);
+	const double                           G = 80e9, twoG = 2 * G;
+	for (int trial = 0; trial < 50; trial++) {
+		const int    holding = trial % 2 ? nLinks : 4;
+		const double invN = 1. / nLinks, exx = u(r), eyy = u(r), exy = u(r);
+		double       e[nLinks] = {};
+		for (int k = 0; k < holding; k++) {
+			const double x = Lattice::x[k], y = Lattice::y[k];
+			e[k] = trial % 4 == 3 ? x * x * exx + 2 * x * y * exy + y * y * eyy : u(r);
+		}
+		const auto energy = [&](double theta, double& normals, double& szz) {
+			double squares = 0;
+			normals = 0, szz = -twoG / 3. * theta;
+			for (int k = 0; k < holding; k++) {
+				const auto s = trialStress(Pair<double> { 0., 0. }, Pair<double> { e[k], 0. }, pairDilation(theta, 12345., ofOwn), twoG);
+				normals += s.normal, squares += square(s);
+			}
+			return equivalentStress2(squares * invN, szz) / (6. * G);
+		};
+		const double theta = trial % 4 == 3 ? exx + eyy : u(r), h = 1e-7;
+		double       normals, szz, a, b;
+		const double slope = (energy(theta + h, a, b) - energy(theta - h, a, b)) / (2. * h);
+		energy(theta, normals, szz);
+		const double found = meanPressure(1e9, normals, 1., szz, invN, 0.7, 0.7) - 1e9;
+		EXPECT_NEAR(found, -slope, 1e-6 * G * 1e-3) << trial;
+		if (trial % 4 == 3) EXPECT_NEAR(found, 0., 1e-12 * G) << trial;
+	}
+}
+
+TEST(AutomataPair, ViscousPressureAndItsStep)
+{
+	Material m;
+	m.eos                 = copper();
+	m.G                   = 48e9;
+	m.viscosity           = { 0.25, 1.2 };
+	const double        d = 1e-3, dt = 1e-8, theta = -2e-4, rate = theta / dt;
+	const BulkViscosity v(m, d, 1. / dt);
+	const double        q = m.eos.rho0 * (0.25 * m.eos.c0 * d * std::fabs(rate) + 1.2 * d * d * rate * rate);
+	EXPECT_NEAR(v.pressure(theta, 1.), q, 1e-12 * q);
+	EXPECT_NEAR(v.pressure(theta, 4.), m.eos.rho0 * (0.25 * m.eos.c0 * 0.5 * d * std::fabs(rate) + 1.2 * 0.25 * d * d * rate * rate), 1e-12 * q);
+	EXPECT_EQ(v.pressure(1e-4, 1.), 0.);
+	EXPECT_EQ(BulkViscosity(m, d, 0.).pressure(theta, 1.), 0.); // nothing has moved
+	const double J = 0.9, Jo = J * (2. - theta) / (2. + theta);
+	EXPECT_NEAR(viscousWork(q, theta, J), q * (Jo - J), 1e-12 * q);
+	EXPECT_EQ(ofLink({ 3., 4. }, VolumeRule::affine).quadratic, 0.);
+	EXPECT_EQ(ofLink({ 3., 4. }, VolumeRule::inversePower).quadratic, 4.);
+	const auto zeta = [&](double stiffer, double approach) { return dampingRatio(m, VolumeRule::affine, stiffer * m.cP(), approach); };
+	EXPECT_GT(zeta(1., 0.), 0.25);
+	EXPECT_NEAR(zeta(2., 0.), 0.5 * zeta(1., 0.), 1e-15);
+	EXPECT_GT(zeta(1., 100.), zeta(1., 0.));
+	m.viscosity = { 0., 0. };
+	EXPECT_EQ(zeta(1., 100.), 0.);
+}
+
 TEST(AutomataMath, LogExpPowAgainstTheLibrary)
 {
 	std::mt19937                           r(4);
