@@ -15,7 +15,7 @@ void viscousHeat(Store& S, size_t b, double dt, BlockWork* work)
 		for (int k = 0; k < nLinks; k++) {
 			if (!holds(S.flags[i], k)) continue;
 			const int32_t       j = S.neighbour[linkSlot(i, k)];
-			const Vec<double>   r { S.x[j] - S.x[i], S.y[j] - S.y[i] }, v { S.vx[j] - S.vx[i], S.vy[j] - S.vy[i] };
+			const Vec<double>   r = S.between(i, j), v = S.velocity.at(j) - S.velocity.at(i);
 			const double        along = dot(r, v);
 			const PairViscosity c = B.mixed ? S.pairViscosity(B.species, j) : viscosityOf(m);
 			q += 0.5 * linkWeight(S.flags[i], k)
