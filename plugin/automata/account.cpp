@@ -10,9 +10,10 @@ Account Solver::account() const
 {
 	const Store& S = store;
 	Account      A = sums;
-	A.kinetic = A.volumetric = A.deviatoric = A.px = A.py = A.angular = 0;
+	A.kinetic = A.volumetric = A.deviatoric = A.angular = 0, A.momentum = {};
 	for (size_t b = 0; b < S.blocks.size(); b++) {
-		double          k = 0, v = 0, q = 0, px = 0, py = 0, a = 0;
+		double          k = 0, v = 0, q = 0, a = 0;
+		Vec<double>     p {};
 		const Material& m = S.materialOf(S.blocks[b]);
 		for (int l = 0; l < S.blocks[b].count; l++) {
 			const size_t i = b * blockSize + l;
@@ -24,11 +25,11 @@ Account Solver::account() const
 				if (S.perInertia[i] > 0) k += 0.5 * S.inertia[i] * sqr(S.omega[i]), a += S.inertia[i] * S.omega[i];
 				continue;
 			}
-			k += 0.5 * (S.mass[i] * (sqr(S.vx[i]) + sqr(S.vy[i])) + S.inertia[i] * sqr(S.omega[i]));
-			px += S.mass[i] * S.vx[i], py += S.mass[i] * S.vy[i];
-			a += S.mass[i] * (S.x[i] * S.vy[i] - S.y[i] * S.vx[i]) + S.inertia[i] * S.omega[i];
+			k += 0.5 * (S.mass[i] * plainSquare(S.velocity.at(i)) + S.inertia[i] * sqr(S.omega[i]));
+			p += S.velocity.at(i) * S.mass[i];
+			a += S.mass[i] * plainCross(S.position.at(i), S.velocity.at(i)) + S.inertia[i] * S.omega[i];
 		}
-		A.kinetic += k, A.volumetric += v, A.deviatoric += q, A.px += px, A.py += py, A.angular += a;
+		A.kinetic += k, A.volumetric += v, A.deviatoric += q, A.momentum += p, A.angular += a;
 	}
 	A.volumetric -= A.heated;
 	for (size_t c = 0; c < contacts.size(); c++) {

@@ -12,18 +12,21 @@ namespace {
 	void check(const Automaton& a, size_t nMaterials)
 	{
 		auto refuse = [&](const std::string& what) { throw Error("automaton " + std::to_string(a.id) + ": " + what); };
-		auto number = [](double v) {
+		auto number = [](auto v) {
 			std::ostringstream s;
 			s << v;
 			return s.str();
 		};
-		for (double v : { a.x, a.y, a.vx, a.vy, a.omega, a.angle, a.mass, a.inertia, a.diameter, a.weight, a.strength })
+		auto finite = [&](double v) {
 			if (!std::isfinite(v))
 				refuse("position, velocity, mass, inertia, diameter, weight or strength is not finite (" + number(v)
 				       + "); give finite numbers.");
+		};
+		for (const Vec<double>& v : { a.position, a.velocity }) std::for_each(v.component, v.component + dim, finite);
+		for (double v : { a.omega, a.angle, a.mass, a.inertia, a.diameter, a.weight, a.strength }) finite(v);
 		if (!(a.diameter > 0)) refuse("diameter " + number(a.diameter) + " m must be above zero.");
-		if (!(std::fabs(a.x) < 1e9 * a.diameter && std::fabs(a.y) < 1e9 * a.diameter))
-			refuse("position (" + number(a.x) + ", " + number(a.y) + ") m must be within 1e9 diameters of the origin.");
+		for (double x : a.position.component)
+			if (!(std::fabs(x) < 1e9 * a.diameter)) refuse("position " + number(a.position) + " m must be within 1e9 diameters of the origin.");
 		if (!(a.temperature >= 0 && std::isfinite(a.temperature)))
 			refuse("temperature " + number(a.temperature) + " K must be finite and not negative.");
 		if (!(a.mass > 0)) refuse("mass " + number(a.mass) + " kg/m must be above zero; set state.mass (rho times area).");
@@ -46,7 +49,7 @@ void Solver::makeBlocks(const std::vector<Automaton>& in)
 		for (size_t q = 0; q < S.species.size(); q++)
 			if (S.species[q].material == a.material && S.species[q].d == a.diameter) sp = int(q);
 		if (sp < 0) sp = int(S.species.size()), S.species.push_back({ a.material, a.diameter });
-		keys.emplace_back(sp, a.x, a.y, a.diameter, a.id, int32_t(keys.size()));
+		keys.emplace_back(sp, a.position, a.diameter, a.id, int32_t(keys.size()));
 	}
 	std::sort(keys.begin(), keys.end());
 	std::vector<int64_t> source; // entry of the input for each lane, -1 = padding
@@ -79,15 +82,16 @@ void Solver::makeBlocks(const std::vector<Automaton>& in)
 		S.temperature[i] = S.materials[sp.material].yield.referenceTemperature;
 		if (source[i] < 0) { // padding sits on its block's first automaton, without links
 			const size_t first = i - i % blockSize;
-			S.x[i] = S.x[first], S.y[i] = S.y[first];
+			S.position.set(i, S.position.at(first));
 			continue;
 		}
 		const Automaton& a = in[source[i]];
 		if (place[a.id] >= 0) throw Error("automaton " + std::to_string(a.id) + " is given twice.");
 		place[a.id] = int32_t(i);
-		S.x[i] = a.x, S.y[i] = a.y, S.vx[i] = a.vx, S.vy[i] = a.vy, S.omega[i] = a.omega, S.angle[i] = a.angle;
+		S.position.set(i, a.position), S.velocity.set(i, a.velocity), S.omega[i] = a.omega, S.angle[i] = a.angle;
 		S.mass[i] = a.mass, S.inertia[i] = a.inertia, S.weight[i] = a.weight, S.strength[i] = a.strength, S.eqps[i] = a.eqps;
-		S.perMassX[i] = a.freeX ? 1. / a.mass : 0., S.perMassY[i] = a.freeY ? 1. / a.mass : 0., S.perInertia[i] = a.freeR ? 1. / a.inertia : 0.;
+		for (int c = 0; c < dim; c++) S.perMass[c][i] = a.free[c] ? 1. / a.mass : 0.;
+		S.perInertia[i] = a.freeR ? 1. / a.inertia : 0.;
 		S.id[i] = a.id, S.group[i] = a.group;
 		if (a.temperature > 0) S.temperature[i] = a.temperature;
 		S.cell[i] *= a.weight;
@@ -103,10 +107,13 @@ void Solver::makeLinks(const Solver* old)
 		dMax = std::max(dMax, sp.d);
 	const double size = dMax * options.linkFactor;
 	std::unordered_map<int64_t, std::vector<int32_t>> cells;
-	auto at  = [&](double x) { return int64_t(std::floor(x / size)); };
-	auto key = [](int64_t cx, int64_t cy) { return cx * 4294967291LL + cy; };
+	auto                                              key = [&](size_t i, Vec<int64_t> offset) {
+                int64_t hash = 0;
+                for (int c = 0; c < dim; c++) hash = hash * 4294967291LL + int64_t(std::floor(S.position[c][i] / size)) + offset[c];
+                return hash;
+	};
 	for (size_t i = 0; i < n; i++)
-		if (S.id[i] >= 0) cells[key(at(S.x[i]), at(S.y[i]))].push_back(int32_t(i));
+		if (S.id[i] >= 0) cells[key(i, {})].push_back(int32_t(i));
 	S.neighbour.resize(S.blocks.size() * nLinks * blockSize);
 	for (size_t i = 0; i < n; i++)
 		for (int k = 0; k < nLinks; k++)
@@ -121,28 +128,26 @@ void Solver::makeLinks(const Solver* old)
 	for (size_t i = 0; i < n; i++) {
 		if (S.id[i] < 0) continue;
 		int found = 0;
-		for (int a = -1; a <= 1; a++)
-			for (int b = -1; b <= 1; b++) {
-				auto it = cells.find(key(at(S.x[i]) + a, at(S.y[i]) + b));
-				if (it == cells.end()) continue;
-				for (int32_t j : it->second) {
-					if (size_t(j) == i || (known(i) && known(j))) continue;
-					const double dx = S.x[j] - S.x[i], dy = S.y[j] - S.y[i], r = std::sqrt(dx * dx + dy * dy),
-						     d = 0.5 * (S.diameter[i] + S.diameter[j]);
-					if (r < 0.5 * d) overlapError(i, j, r / d);
-					if (S.group[i] != S.group[j] || r >= options.linkFactor * d) continue;
-					if (found < nLinks) near[i].other[found] = j, near[i].angle[found] = std::atan2(dy, dx);
-					found++;
-				}
+		eachNeighbour([&](Vec<int64_t> offset) {
+			auto it = cells.find(key(i, offset));
+			if (it == cells.end()) return;
+			for (int32_t j : it->second) {
+				if (size_t(j) == i || (known(i) && known(j))) continue;
+				const double r = std::sqrt(S.distance2(i, j)), d = S.restDistance(i, j);
+				if (r < 0.5 * d) overlapError(i, j, r / d);
+				if (S.group[i] != S.group[j] || r >= options.linkFactor * d) continue;
+				if (found < nLinks) near[i].other[found] = j, near[i].angle[found] = Lattice::angle(S.between(i, j));
+				found++;
 			}
+		});
 		if (found > nLinks && crowded < 0) crowded = int64_t(i), most = found;
 		near[i].count = std::min(found, nLinks);
 	}
 	if (crowded >= 0) {
 		std::ostringstream s;
-		s << "automaton " << S.id[crowded] << " at (" << S.x[crowded] << ", " << S.y[crowded] << ") m has " << most << " neighbours within "
-		  << options.linkFactor << " diameters; the hexagonal packing has at most 6. The spacing of the packing does not match the diameter "
-		  << S.diameter[crowded] << " m: build the packing with this spacing.";
+		s << "automaton " << S.id[crowded] << " at " << S.position.at(crowded) << " m has " << most << " neighbours within " << options.linkFactor
+		  << " diameters; the hexagonal packing has at most 6. The spacing of the packing does not match the diameter " << S.diameter[crowded]
+		  << " m: build the packing with this spacing.";
 		throw Error(s.str());
 	}
 	placeLinks(near, old);
@@ -188,7 +193,7 @@ void Solver::placeLinks(const std::vector<Near>& near, const Solver* old)
 		for (int k = 0; k < nLinks; k++)
 			if ((S.flags[i] >> k) & 1) {
 				const int32_t j = S.neighbour[linkSlot(i, k)];
-				const double  turn = std::atan2(S.y[j] - S.y[i], S.x[j] - S.x[i]) - k * Lattice::turn;
+				const double  turn = Lattice::angle(S.between(i, j)) - k * Lattice::turn;
 				c += std::cos(turn), s += std::sin(turn);
 			}
 		if (c != 0 || s != 0) frame[i] = std::atan2(s, c);
@@ -212,8 +217,8 @@ void Solver::placeLinks(const std::vector<Near>& near, const Solver* old)
 				off += turn - slot;
 				if (std::fabs(turn - slot) > 0.42 || ((S.flags[i] >> k) & 1)) {
 					std::ostringstream s;
-					s << "automaton " << S.id[i] << " at (" << S.x[i] << ", " << S.y[i]
-					  << ") m: its neighbours do not stand at multiples of 60 degrees (one is off by " << 60. * std::fabs(turn - slot)
+					s << "automaton " << S.id[i] << " at " << S.position.at(i)
+					  << " m: its neighbours do not stand at multiples of 60 degrees (one is off by " << 60. * std::fabs(turn - slot)
 					  << " degrees). Link hexagonal packings of one orientation only; give bodies of another orientation another mask.";
 					throw Error(s.str());
 				}
@@ -296,7 +301,7 @@ void Solver::build(const std::vector<Automaton>& automata, const std::vector<Mat
 	for (auto& m : materials)
 		flows |= m.yield.yields() && o.volumeRule == VolumeRule::affine;
 	filterTime = 0;
-	tied.clear(), tiedVx.clear(), tiedVy.clear(), tiedW.clear(), exposed.clear(), contactAdjacent.clear();
+	tied.clear(), tiedVelocity = {}, tiedSpin.clear(), exposed.clear(), contactAdjacent.clear();
 	time = lastDt = lastMove = dtLimit = contactSpeed2 = 0, lastSort = 0;
 	unsettled.clear();
 	makeBlocks(automata);
@@ -314,7 +319,7 @@ void Solver::build(const std::vector<Automaton>& automata, const std::vector<Mat
 	for (auto& B : S.blocks)
 		B.awake = !options.sleeping, B.moving = false;
 	for (size_t i = 0; i < S.size(); i++)
-		if (S.vx[i] != 0 || S.vy[i] != 0 || S.omega[i] != 0) S.blocks[i / blockSize].moving = true;
+		if (!isZero(S.velocity.at(i)) || S.omega[i] != 0) S.blocks[i / blockSize].moving = true;
 	topologyChanged = true;
 	sums.kineticStart = 0;
 	sums.kineticStart = account().kinetic;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A state that was read from somewhere: whatever made it, no pass may index or divide by what it holds unless it was looked at here.
 #include "solver.hpp"
+#include <algorithm>
 #include <cmath>
 
 namespace mca::automata {
@@ -31,6 +32,14 @@ namespace {
 	bool notNegative(const Doubles& v)
 	{
 		return all(v, [](double x) { return x >= 0 && x < largest; });
+	}
+	template <class F> bool allOf(F&& f, const Vectors& v) { return std::all_of(v.begin(), v.end(), f); }
+	template <class F> bool allOf(F&& f, const Doubles& v) { return f(v); }
+	/// f(array) holds for each array of these quantities.
+	template <class F, class... V> bool allOf(F&& f, const V&... v) { return (allOf(f, v) && ...); }
+	bool                                sized(const Vectors& v, size_t n)
+	{
+		return allOf([&](const Doubles& plane) { return plane.size() == n; }, v);
 	}
 	bool within(const Indices& v, size_t end)
 	{
@@ -86,19 +95,17 @@ namespace {
 			[&](auto& v, Presence p) { need(v.size() == n || (p == Presence::whenUsed && v.empty()), "the length of an array"); });
 		bool heats = false;
 		for (const Material& m : S.materials) heats |= m.eos.heats();
-		need(S.heat.empty() != heats && S.outsideX.size() == S.outsideY.size() && S.outsideX.size() == S.outsideTorque.size()
-		             && S.dampX.size() == S.dampY.size(),
-		     "the length of an array");
-		for (auto v : { &S.x, &S.y, &S.vx, &S.vy, &S.omega, &S.angle, &S.rest, &S.factor, &S.inertia }) need(finite(*v), "a position or velocity");
-		for (auto v : { &S.mass, &S.diameter, &S.cell, &S.invN, &S.strength, &S.weight }) need(positive(*v), "a mass or size");
-		for (auto v : { &S.perMassX, &S.perMassY, &S.perInertia, &S.dampX, &S.dampY }) need(notNegative(*v), "a mass or damping");
+		need(S.heat.empty() != heats && sized(S.outside, S.outsideTorque.size()) && sized(S.damp, S.damp.size()), "the length of an array");
+		need(allOf(finite, S.position, S.velocity, S.omega, S.angle, S.rest, S.factor, S.inertia), "a position or velocity");
+		need(allOf(positive, S.mass, S.diameter, S.cell, S.invN, S.strength, S.weight), "a mass or size");
+		need(allOf(notNegative, S.perMass, S.perInertia, S.damp), "a mass or damping");
 		for (size_t i = 0; i < n; i++) need(S.diameter[i] == S.species[size_t(S.speciesOf(i))].d, "a diameter");
 		const size_t links = n * nLinks;
 		need(S.neighbour.size() == links && S.s.size() == links && S.tau.size() == links, "the length of the links");
 		if (stopped) return;
-		for (auto v : { &S.dTheta, &S.P, &S.mean, &S.h, &S.szz, &S.temperature, &S.criterion, &S.heat, &S.fx, &S.fy, &S.torque, &S.outsideX,
-		                &S.outsideY, &S.outsideTorque, &S.s, &S.tau })
-			need(finite(*v), "a stress or force");
+		need(allOf(finite, S.dTheta, S.P, S.mean, S.h, S.szz, S.temperature, S.criterion, S.heat, S.force, S.torque, S.outside, S.outsideTorque, S.s,
+		           S.tau),
+		     "a stress or force");
 		need(positive(S.J) && notNegative(S.eqps), "a volume or strain");
 	}
 
@@ -169,20 +176,19 @@ void Solver::checkState() const
 	checkLinks(S);
 	checkContacts(contacts, S, stopped, searchDue && options.contacts);
 	const bool used = contacts.size() > 0 && !(searchDue && options.contacts);
-	for (auto v : { &scratch.sum, &scratch.square, &scratch.scale, &scratch.fx, &scratch.fy, &scratch.torque })
-		need(v->size() == n || (!used && v->empty()), "the length of an array");
-	for (auto v : { &scratch.old, &scratch.volX, &scratch.volY, &scratch.visX, &scratch.visY, &accountForce.volX, &accountForce.volY, &accountForce.visX,
-	                &accountForce.visY })
-		need(v->size() == n || v->empty(), "the length of an array");
-	for (auto v : { &scratch.sum, &scratch.square, &scratch.old, &scratch.scale, &scratch.fx, &scratch.fy, &scratch.torque, &scratch.volX, &scratch.volY,
-	                &scratch.visX, &scratch.visY, &accountForce.volX, &accountForce.volY, &accountForce.visX, &accountForce.visY })
-		need(stopped || finite(*v), "the force of a contact");
+	const auto sum  = [&](const Doubles& v, bool optional) {
+                need(v.size() == n || (optional && v.empty()), "the length of an array");
+                need(stopped || finite(v), "the force of a contact");
+	};
+	const_cast<ContactScratch&>(scratch).eachArray([&](const Doubles& v, Presence p) { sum(v, p == Presence::whenUsed || !used); });
+	for (const Vectors* v : { &accountForce.volumetric, &accountForce.viscous })
+		for (const Doubles& plane : *v) sum(plane, true);
 	for (const Block& b : S.blocks) need(!b.contact || scratch.sum.size() == n, "a block with contacts");
-	need(within(exposed, n) && size({ &searchX, &searchY }, exposed.size()) && finite(searchX) && finite(searchY), "the list of exposed automata");
+	need(within(exposed, n) && sized(searched, exposed.size()) && allOf(finite, searched), "the list of exposed automata");
 	need(offsets(adjacentBegin, blocks, adjacent.size()) && within(adjacent, blocks), "the neighbours of blocks");
 	need(within(awake, blocks), "the list of blocks awake");
 	for (size_t k = 1; k < awake.size(); k++) need(awake[k] > awake[k - 1], "the list of blocks awake");
-	need(within(tied, n) && size({ &tiedVx, &tiedVy, &tiedW }, tied.size()) && finite(tiedVx) && finite(tiedVy) && finite(tiedW),
+	need(within(tied, n) && sized(tiedVelocity, tied.size()) && tiedSpin.size() == tied.size() && allOf(finite, tiedVelocity, tiedSpin),
 	     "the list of tied automata");
 	size_t carried = 0;
 	for (int32_t f : S.flags) carried += (f & tiedBit) != 0;
@@ -194,8 +200,8 @@ void Solver::checkState() const
 	need(carried == tied.size(), "the list of tied automata");
 	for (double v : { time, lastDt, lastMove, dtLimit, filterTime }) need(v >= 0 && v <= 1e300, "a time");
 	need(contactSpeed2 >= 0 && contactSpeed2 < largest, "a speed");
-	const auto* sum = reinterpret_cast<const double*>(&sums);
-	for (size_t k = 0; k < sizeof sums / sizeof(double); k++) need(stopped || std::fabs(sum[k]) < largest, "the account of energy");
+	const auto* booked = reinterpret_cast<const double*>(&sums);
+	for (size_t k = 0; k < sizeof sums / sizeof(double); k++) need(stopped || std::fabs(booked[k]) < largest, "the account of energy");
 	need(counters.steps >= 0 && counters.searches >= 0 && counters.blockSteps >= 0 && counters.brokenLinks >= 0 && counters.clamped >= 0
 	             && counters.sorts >= 0 && lastSort >= 0,
 	     "a counter");

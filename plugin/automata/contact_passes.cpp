@@ -8,12 +8,16 @@ namespace {
 	constexpr long parallelFrom = 2048; ///< half-contacts below which waking a thread costs more than it brings
 	/// The arrays as bare pointers: through the vectors their starts would be read again for each contact, and nothing would vectorise.
 	struct View {
-#define MCA_POINTER(name, type, presence, text) type* name;
-		MCA_CONTACT_FIELDS(MCA_POINTER)
-#undef MCA_POINTER
-#define MCA_POINT(name, type, presence, text) name = C.name.data();
-		explicit View(Contacts& C) { MCA_CONTACT_FIELDS(MCA_POINT) }
-#undef MCA_POINT
+#define MCA_NUMBER(name, type, presence, text) type* name;
+#define MCA_VECTOR(name, presence, text, ...) Planes<double> name;
+		MCA_CONTACT_FIELDS(MCA_NUMBER, MCA_VECTOR)
+#undef MCA_VECTOR
+#undef MCA_NUMBER
+#define MCA_NUMBER(name, type, presence, text) name = C.name.data();
+#define MCA_VECTOR(name, presence, text, ...) name = C.name.planes();
+		explicit View(Contacts& C) { MCA_CONTACT_FIELDS(MCA_NUMBER, MCA_VECTOR) }
+#undef MCA_VECTOR
+#undef MCA_NUMBER
 	};
 	/// Sums of K quantities over each row, in the order of the row. All in one go: rows are short, and their ends cost more than the sums.
 	template <size_t K> void addRows(const Contacts& C, const std::array<const double*, K>& from, const std::array<double*, K>& to)
@@ -38,13 +42,13 @@ namespace {
 	// One half-contact each, in functions of their own, with the view private to the thread: a vector or pair declared in the body of a parallel loop, or a
 	// view that is shared, keeps it from being vectorised.
 
-	template <VolumeRule rule> MCA_INLINE void volumeTermOf(const View& V, const double* x, const double* y, long c)
-	{
+        template <VolumeRule rule> MCA_INLINE void volumeTermOf(const View& V, const Planes<const double>& x, long c)
+        {
 		const int32_t     i = V.owner[c], j = V.other[c];
-		const Vec<double> r    = { x[j] - x[i], y[j] - y[i] };
-		const double      rest = V.rest[c], d = V.d[c], r2 = dot(r, r), on = pushes(r2, rest, d);
-		V.dx[c] = r.x, V.dy[c] = r.y, V.r2[c] = r2;
-		V.pushing[c] = on;
+				  const Vec<double> r    = x.at(j) - x.at(i);
+				  const double      rest = V.rest[c], d = V.d[c], r2 = dot(r, r), on = pushes(r2, rest, d);
+				  V.between.set(c, r), V.r2[c] = r2;
+				  V.pushing[c] = on;
 		V.first[c]       = on > 0. ? volumeTerm<rule>(rest, r2) : 0.;
 		V.rest[c]    = restAfter(rest, r2, d);
 		V.second[c]       = on > 0. ? r2 / (rest * rest) : 1.;
@@ -53,23 +57,29 @@ namespace {
 	{
 		const long    n = long(C.size());
 		const View    V(C);
-		const double *x = S.x.data(), *y = S.y.data();
-#pragma omp parallel for simd schedule(static) firstprivate(V) if (n >= parallelFrom)
-		for (long c = 0; c < n; c++)
-			volumeTermOf<rule>(V, x, y, c);
-	}
+				  const auto    x = S.position.planes();
+#pragma omp parallel for simd schedule(static) firstprivate(V, x) if (n >= parallelFrom)
+                for (long c = 0; c < n; c++) volumeTermOf<rule>(V, x, c);
+        }
 
 	/// What the trial stresses read of the automata.
 	struct Movers {
-		const double *vx, *vy, *omega, *dTheta, *J;
-		explicit Movers(const Store& S) : vx(S.vx.data()), vy(S.vy.data()), omega(S.omega.data()), dTheta(S.dTheta.data()), J(S.J.data()) { }
-	};
+                const Planes<const double> velocity;
+                const double *             omega, *dTheta, *J;
+                explicit Movers(const Store& S)
+                        : velocity(S.velocity.planes())
+                        , omega(S.omega.data())
+                        , dTheta(S.dTheta.data())
+                        , J(S.J.data())
+                {
+                }
+        };
 	/// Returns the relative speed squared [m2/s2].
 	template <bool account> MCA_INLINE double trialOf(const View& V, const Movers& M, double dt, long c)
 	{
 		const int32_t     i = V.owner[c], j = V.other[c];
-		const Vec<double> r = { V.dx[c], V.dy[c] }, v = { M.vx[j] - M.vx[i], M.vy[j] - M.vy[i] };
-		const double      touch = max(V.pushing[c], V.pushing[V.reverse[c]]), perOldJ = perOldRatio(M.dTheta[i], M.J[i]);
+				  const Vec<double>                    r = V.between.at(c), v = M.velocity.at(j) - M.velocity.at(i);
+				  const double      touch = max(V.pushing[c], V.pushing[V.reverse[c]]), perOldJ = perOldRatio(M.dTheta[i], M.J[i]);
 		const Pair<double> old { V.s[c] * perOldJ, V.tau[c] * perOldJ };
 		const auto         strain = strainIncrement(r, v * dt, pairSpin(M.omega[i], M.omega[j], V.arm[c], dt));
 				  const Pair<double> all    = trialStress(old, strain, pairDilation(M.dTheta[i], M.dTheta[j], ofBoth), V.twoG[c]);
@@ -129,19 +139,25 @@ namespace {
 		}
 	}
 
-	/// t: torque, and for the account the shares of pressure and viscosity, n numbers each.
+        /// Planes of n numbers one behind the other.
+        MCA_INLINE Planes<double> planesFrom(double* first, long n)
+        {
+				  Planes<double> p;
+				  for (int c = 0; c < dim; c++) p.plane[c] = first + c * n;
+                return p;
+        }
+        /// t: torque, and for the account the shares of pressure and viscosity, n numbers each.
 	template <bool account> MCA_INLINE void forceOf(const View& V, double* t, long n, long c)
 	{
 		const int32_t      r   = V.reverse[c];
-		const Vec<double>  x   = { V.dx[c], V.dy[c] };
-		const double       d = V.d[c], inv = 1. / V.r2[c], on = V.touch[c], area = pairArea(1., d);
+				  const Vec<double>  x   = V.between.at(c);
+				  const double       d = V.d[c], inv = 1. / V.r2[c], on = V.touch[c], area = pairArea(1., d);
 		const Pair<double> both { on * (area * (V.s[c] + V.s[r])), on * (area * (V.tau[c] + V.tau[r])) };
 		const double       q  = on * viscousCoefficient(V.along[c], inv, V.viscLinear[c], V.viscQuadratic[c], Lattice::width(d)), pr = on * V.press[c];
-		const Vec<double>  f  = contactForce(x, both, inv, q, pr);
-		V.first[c] = f.x, V.second[c] = f.y;
-		t[c]   = V.arm[c] * both.shear;
-		if (account) t[n + c] = -pr * x.x, t[2 * n + c] = -pr * x.y, t[3 * n + c] = q * x.x, t[4 * n + c] = q * x.y;
-	}
+				  V.between.set(c, contactForce(x, both, inv, q, pr));
+				  t[c]   = V.arm[c] * both.shear;
+				  if (account) planesFrom(t + n, n).set(c, x * -pr), planesFrom(t + (1 + dim) * n, n).set(c, x * q);
+        }
 	template <bool account> void forces(Contacts& C, double* t)
 	{
 		const long n = long(C.size());
@@ -199,12 +215,20 @@ void contactPressure(const Store& S, Contacts& C, VolumeRule rule)
 void contactForces(Contacts& C, ContactScratch& out, bool account)
 {
 	const long n = long(C.size());
-	out.terms.resize(account ? n * 5 : n);
+	out.terms.resize(account ? n * (1 + 2 * dim) : n);
 	double* t = out.terms.data();
 	account ? forces<true>(C, t) : forces<false>(C, t);
-	if (!account) addRows<3>(C, { C.first.data(), C.second.data(), t }, { out.fx.data(), out.fy.data(), out.torque.data() });
-	else
-		addRows<7>(C, { C.first.data(), C.second.data(), t, t + n, t + 2 * n, t + 3 * n, t + 4 * n },
-		           { out.fx.data(), out.fy.data(), out.torque.data(), out.volX.data(), out.volY.data(), out.visX.data(), out.visY.data() });
+	std::array<const double*, 1 + dim> from { t };
+	std::array<double*, 1 + dim>       to { out.torque.data() };
+	for (int c = 0; c < dim; c++) from[1 + c] = C.between[c].data(), to[1 + c] = out.force[c].data();
+	addRows<1 + dim>(C, from, to);
+	if (!account) return;
+	std::array<const double*, 2 * dim> shares;
+	std::array<double*, 2 * dim>       sums;
+	for (int c = 0; c < dim; c++) {
+		shares[c] = t + (1 + c) * n, sums[c] = out.volumetric[c].data();
+		shares[dim + c] = t + (1 + dim + c) * n, sums[dim + c] = out.viscous[c].data();
+	}
+	addRows<2 * dim>(C, shares, sums);
 }
 }

@@ -8,39 +8,50 @@ namespace mca::automata {
 namespace {
 	/// Uniform grid of cells over the exposed automata; a list per cell by counting sort.
 	struct CellGrid {
-		double               x0 = 0, y0 = 0, inv = 0;
-		int                  nx = 1, ny = 1;
+		Vec<double>          low {}, high {}; ///< corners of the box that holds all [m]
+		double               inv = 0;         ///< cells per length [1/m]
+		Vec<int>             count {};
 		std::vector<int32_t> begin, item;
-		std::vector<double>  px, py; ///< positions in the order of `item`: the cells around an automaton are three runs of it
+		Vectors              position; ///< in the order of `item`: the cells around an automaton are a few runs of it
 		CellGrid(const Store& S, const std::vector<int32_t>& who, double size)
 		{
-			double x1 = -1e300, y1 = -1e300;
-			x0 = y0 = 1e300;
-			for (int32_t i : who)
-				x0 = std::min(x0, S.x[i]), y0 = std::min(y0, S.y[i]), x1 = std::max(x1, S.x[i]), y1 = std::max(y1, S.y[i]);
+			for (int c = 0; c < dim; c++) {
+				low[c] = 1e300, high[c] = -1e300;
+				for (int32_t i : who) low[c] = std::min(low[c], S.position[c][i]), high[c] = std::max(high[c], S.position[c][i]);
+			}
 			// debris far away must not make the grid larger than the list that it serves
-			const double most = 8. * double(who.size()) + 1024.;
-			while (((x1 - x0) / size + 1) * ((y1 - y0) / size + 1) > most)
-				size *= 1.25;
-			inv = 1. / size;
-			nx = int((x1 - x0) * inv) + 1, ny = int((y1 - y0) * inv) + 1;
-			begin.assign(size_t(nx) * ny + 1, 0);
+			const double most  = 8. * double(who.size()) + 1024.;
+			const auto   cells = [&] {
+                                double n = 1;
+                                for (int c = 0; c < dim; c++) n *= (high[c] - low[c]) / size + 1;
+                                return n;
+			};
+			while (cells() > most) size *= 1.25;
+			inv        = 1. / size;
+			size_t all = 1;
+			for (int c = 0; c < dim; c++) count[c] = int((high[c] - low[c]) * inv) + 1, all *= size_t(count[c]);
+			begin.assign(all + 1, 0);
 			for (int32_t i : who)
 				begin[cellOf(S, i) + 1]++;
 			for (size_t c = 1; c < begin.size(); c++)
 				begin[c] += begin[c - 1];
-			for (auto v : { &px, &py })
-				v->resize(who.size());
+			position.resize(who.size());
 			item.resize(who.size());
 			std::vector<int32_t> at(begin.begin(), begin.end() - 1);
 			for (int32_t i : who) {
 				const int32_t p = at[cellOf(S, i)]++;
-				item[p] = i, px[p] = S.x[i], py[p] = S.y[i];
+				item[p]         = i, position.set(p, S.position.at(i));
 			}
 		}
-		int    column(double x) const { return std::max(0, std::min(int((x - x0) * inv), nx - 1)); }
-		int    row(double y) const { return std::max(0, std::min(int((y - y0) * inv), ny - 1)); }
-		size_t cellOf(const Store& S, int32_t i) const { return size_t(row(S.y[i])) * nx + column(S.x[i]); }
+		/// The cell of a place, moved by so many cells, within the grid.
+		Vec<int> cell(Vec<double> x, int by) const
+		{
+			Vec<int> at;
+			for (int c = 0; c < dim; c++)
+				at[c] = std::max(0, std::min(std::max(0, std::min(int((x[c] - low[c]) * inv), count[c] - 1)) + by, count[c] - 1));
+			return at;
+		}
+		size_t cellOf(const Store& S, int32_t i) const { return cellNumber(cell(S.position.at(i), 0), count); }
 	};
 	bool linked(const Store& S, int32_t i, int32_t j)
 	{
@@ -55,15 +66,16 @@ namespace {
 	/// The size of the cells is at least the largest such distance.
 	template <class F> void around(const Store& S, const CellGrid& grid, int32_t i, double skin, F&& f)
 	{
-		const double x = S.x[i], y0 = S.y[i], far2 = 1. / sqr(grid.inv);
-		const int    cx = grid.column(x), cy = grid.row(y0);
-		for (int y = std::max(cy - 1, 0); y <= std::min(cy + 1, grid.ny - 1); y++) {
-			const size_t first = size_t(y) * grid.nx + std::max(cx - 1, 0), last = size_t(y) * grid.nx + std::min(cx + 1, grid.nx - 1);
-			for (int32_t p = grid.begin[first]; p < grid.begin[last + 1]; p++) {
-				const double r2 = sqr(grid.px[p] - x) + sqr(grid.py[p] - y0);
-				if (r2 < far2 && r2 < reach2(S, i, grid.item[p], skin) && f(grid.item[p])) return;
+		const Vec<double> x    = S.position.at(i);
+		const auto        at   = grid.position.planes();
+		const double      far2 = 1. / sqr(grid.inv);
+		eachRun(grid.cell(x, -1), grid.cell(x, 1), [&](Vec<int> first, Vec<int> last) {
+			for (int32_t p = grid.begin[cellNumber(first, grid.count)]; p < grid.begin[cellNumber(last, grid.count) + 1]; p++) {
+				const double r2 = plainSquare(at.at(p) - x);
+				if (r2 < far2 && r2 < reach2(S, i, grid.item[p], skin) && f(grid.item[p])) return true;
 			}
-		}
+			return false;
+		});
 	}
 	/// Adds to `who` the interior automata that something foreign is about to reach, in the order of the arrays.
 	void addReached(const Store& S, std::vector<int32_t>& who, double size, double skin, int threads)
@@ -71,13 +83,19 @@ namespace {
 		const CellGrid                    grid(S, who, size);
 		std::vector<std::vector<int32_t>> parts(threads);
 		const long                        nb = long(S.blocks.size());
-		const double                      x1 = grid.x0 + (grid.nx + 1) / grid.inv, y1 = grid.y0 + (grid.ny + 1) / grid.inv, margin = 1. / grid.inv;
+		Vec<double>                       low, high;
+		for (int c = 0; c < dim; c++) low[c] = grid.low[c] - 1. / grid.inv, high[c] = grid.low[c] + (grid.count[c] + 1) / grid.inv;
+		const auto away = [&](size_t i) {
+			bool any = false;
+			for (int c = 0; c < dim; c++) any |= S.position[c][i] < low[c] || S.position[c][i] > high[c];
+			return any;
+		};
 #pragma omp parallel for schedule(static, 1) num_threads(threads)
 		for (int t = 0; t < threads; t++)
 			for (long b = nb * t / threads; b < nb * (t + 1) / threads; b++)
 				for (int l = 0; l < S.blocks[b].count; l++) {
 					const int32_t i = int32_t(b * blockSize + l);
-					if (exposed(S, i) || S.x[i] < grid.x0 - margin || S.y[i] < grid.y0 - margin || S.x[i] > x1 || S.y[i] > y1) continue;
+					if (exposed(S, i) || away(i)) continue;
 					around(S, grid, i, skin, [&](int32_t j) {
 						if (!touching(S, j, i)) return false;
 						parts[t].push_back(i);

@@ -8,8 +8,28 @@ namespace mca::automata {
 
 /// Arrays of one entry per automaton that the contact passes fill for the passes over links.
 struct ContactScratch {
-	std::vector<double> sum, square, old, scale, fx, fy, torque, volX, volY, visX, visY;
+#define MCA_NUMBER(name, presence, text) std::vector<double> name;
+#define MCA_VECTOR(name, presence, text, ...) Vectors name;
+	MCA_CONTACT_SUMS(MCA_NUMBER, MCA_VECTOR)
+#undef MCA_VECTOR
+#undef MCA_NUMBER
 	std::vector<double> terms; ///< per half-contact
+	void                resize(size_t n, bool account)
+	{
+		eachArray([&](auto& v, Presence p) {
+			if (p == Presence::always || account) v.resize(n, 0.);
+		});
+	}
+	/// f(array, presence) for every array with one entry per automaton
+	template <class F> void eachArray(F&& f)
+	{
+#define MCA_NUMBER(name, presence, text) f(name, Presence::presence);
+#define MCA_VECTOR(name, presence, text, ...) \
+	for (auto& plane : name) f(plane, Presence::presence);
+		MCA_CONTACT_SUMS(MCA_NUMBER, MCA_VECTOR)
+#undef MCA_VECTOR
+#undef MCA_NUMBER
+	}
 };
 
 /// New list of contacts from all exposed automata closer than (1 + skin) times their rest distance; stresses of pairs that go on are kept.
@@ -27,6 +47,6 @@ double contactTrial(const Store& S, Contacts& C, double dt, ContactScratch& out,
 void contactPressure(const Store& S, Contacts& C, VolumeRule rule);
 /// Radial return by scratch.scale, then no tension and Coulomb friction.
 void contactFriction(const Store& S, Contacts& C, const ContactScratch& in, ContactWork* work);
-/// Forces; fills scratch.fx, fy, torque (and the shares of pressure and viscosity for the account).
+/// Forces; fills scratch.force, torque (and the shares of pressure and viscosity for the account).
 void contactForces(Contacts& C, ContactScratch& out, bool account);
 }

@@ -7,13 +7,12 @@
 
 namespace mca::automata {
 
-void Solver::addForce(size_t i, double fx, double fy, double torque)
+void Solver::addForce(size_t i, Vec<double> force, double torque)
 {
 	Store& S = store;
-	for (auto v : { &S.outsideX, &S.outsideY, &S.outsideTorque })
-		if (v->empty()) v->assign(S.size(), 0.);
-	S.outsideX[i] += fx, S.outsideY[i] += fy, S.outsideTorque[i] += torque;
-	if (fx != 0 || fy != 0 || torque != 0) {
+	if (S.outside.empty()) S.outside.resize(S.size()), S.outsideTorque.resize(S.size(), 0.);
+	S.outside.add(i, force), S.outsideTorque[i] += torque;
+	if (!isZero(force) || torque != 0) {
 		if (!S.blocks[i / blockSize].moving) topologyChanged = true;
 		S.blocks[i / blockSize].moving = true;
 	}
@@ -21,22 +20,19 @@ void Solver::addForce(size_t i, double fx, double fy, double torque)
 
 void Solver::clearForces()
 {
-	for (auto v : { &store.outsideX, &store.outsideY, &store.outsideTorque })
-		std::fill(v->begin(), v->end(), 0.);
+	eachPlane([](auto& v) { std::fill(v.begin(), v.end(), 0.); }, store.outside, store.outsideTorque);
 }
 
-void Solver::setDamping(size_t i, double bx, double by)
+void Solver::setDamping(size_t i, Vec<double> b)
 {
 	Store& S = store;
-	if (!(bx >= 0) || !(by >= 0) || !std::isfinite(bx + by)) {
+	if (!std::all_of(b.component, b.component + dim, [](double v) { return v >= 0 && std::isfinite(v); })) {
 		std::ostringstream s;
-		s << "automaton " << S.id[i] << ": viscous boundary coefficient (" << bx << ", " << by
-		  << ") kg/(m s) must be finite and not negative (rho c A).";
+		s << "automaton " << S.id[i] << ": viscous boundary coefficient " << b << " kg/(m s) must be finite and not negative (rho c A).";
 		throw Error(s.str());
 	}
-	for (auto v : { &S.dampX, &S.dampY })
-		if (v->empty()) v->assign(S.size(), 0.);
-	S.dampX[i] = bx, S.dampY[i] = by;
+	if (S.damp.empty()) S.damp.resize(S.size());
+	S.damp.set(i, b);
 }
 
 size_t Solver::tie(size_t i, bool freeSpin)
@@ -44,21 +40,21 @@ size_t Solver::tie(size_t i, bool freeSpin)
 	Store& S = store;
 	if (S.flags[i] & tiedBit) throw Error("automaton " + std::to_string(S.id[i]) + " is tied already.");
 	S.flags[i] |= tiedBit;
-	S.perMassX[i] = S.perMassY[i] = 0.;
+	S.perMass.set(i, {});
 	if (!freeSpin) S.perInertia[i] = 0.;
-	tied.push_back(int32_t(i)), tiedVx.push_back(S.vx[i]), tiedVy.push_back(S.vy[i]), tiedW.push_back(S.omega[i]);
-	sums.kineticStart -= 0.5 * (S.mass[i] * (sqr(S.vx[i]) + sqr(S.vy[i])) + (S.perInertia[i] > 0 ? 0. : S.inertia[i] * sqr(S.omega[i])));
+	tied.push_back(int32_t(i)), tiedVelocity.push_back(S.velocity.at(i)), tiedSpin.push_back(S.omega[i]);
+	sums.kineticStart -= 0.5 * (S.mass[i] * plainSquare(S.velocity.at(i)) + (S.perInertia[i] > 0 ? 0. : S.inertia[i] * sqr(S.omega[i])));
 	return tied.size() - 1;
 }
 
-void Solver::setTiedVelocity(size_t t, double vx, double vy, double omega)
+void Solver::setTiedVelocity(size_t t, Vec<double> velocity, double omega)
 {
 	Store&       S = store;
 	const size_t i = tied[t];
-	tiedVx[t] = S.vx[i], tiedVy[t] = S.vy[i], tiedW[t] = S.omega[i];
-	S.vx[i] = vx, S.vy[i] = vy;
+	tiedVelocity.set(t, S.velocity.at(i)), tiedSpin[t] = S.omega[i];
+	S.velocity.set(i, velocity);
 	if (!(S.perInertia[i] > 0)) S.omega[i] = omega;
-	if ((vx != 0 || vy != 0 || omega != 0) && !S.blocks[i / blockSize].moving) S.blocks[i / blockSize].moving = topologyChanged = true;
+	if ((!isZero(velocity) || omega != 0) && !S.blocks[i / blockSize].moving) S.blocks[i / blockSize].moving = topologyChanged = true;
 }
 
 void Solver::moved()

@@ -1,26 +1,24 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // What the solver keeps of an automaton and of a contact, each quantity once. The arrays, the saved state with its version, sorting, the lengths that are
-// checked after loading and McaEngine.field() follow from these rows. MCA_VECTOR and MCA_TURN are the one place that knows the components of a vector and of
-// a rotation.
+// checked after loading and McaEngine.field() follow from these rows. The rows of vectors hold the names of their components in saved states and for scripts;
+// nothing else in this folder knows how many there are.
 #pragma once
 #include <cstdint>
 
-/// A row of vectors: one row per component.
-#define MCA_VECTOR(F, x, y, type, presence, shownX, shownY, text) F(x, type, presence, shownX, text) F(y, type, presence, shownY, text)
 /// A row of rotations or torques: plane motion turns about one axis.
 #define MCA_TURN(F, z, type, presence, shown, text) F(z, type, presence, shown, text)
 
-/// F(name, type, presence, shown, text); presence: `always` an entry per automaton, `whenUsed`: empty in scenes without it; shown: name for
-/// McaEngine.field(), "" for none. SI units per unit thickness.
-#define MCA_AUTOMATON_FIELDS(F) \
+/// F(name, type, presence, shown, text), V(name, presence, scripts, text, names of the components); presence: `always` an entry per automaton, `whenUsed`:
+/// empty in scenes without it; shown: name for McaEngine.field(), "" for none; scripts: whether it shows the components. SI units per unit thickness.
+#define MCA_AUTOMATON_FIELDS(F, V) \
 	F(factor, double, always, "", "affine rule: J of the links = factor det F; 0 = too few links to have a volume [-]") \
-	MCA_VECTOR(F, x, y, double, always, "x", "y", "position [m]") \
-	MCA_VECTOR(F, vx, vy, double, always, "vx", "vy", "velocity [m/s]") \
+	V(position, always, shown, "[m]", "x", "y") \
+	V(velocity, always, shown, "[m/s]", "vx", "vy") \
 	MCA_TURN(F, omega, double, always, "omega", "spin [rad/s]") \
 	MCA_TURN(F, angle, double, always, "angle", "turned angle [rad]") \
 	F(mass, double, always, "mass", "[kg/m]") \
 	MCA_TURN(F, inertia, double, always, "", "[kg m]") \
-	MCA_VECTOR(F, perMassX, perMassY, double, always, "", "", "1/mass [m/kg]; zero where the degree of freedom is blocked") \
+	V(perMass, always, hidden, "1/mass [m/kg]; zero where the degree of freedom is blocked", "perMassX", "perMassY") \
 	MCA_TURN(F, perInertia, double, always, "", "1/inertia [1/(kg m)]; zero where it is blocked") \
 	F(diameter, double, always, "diameter", "[m]") \
 	F(cell, double, always, "", "Omega0 [m2]") \
@@ -37,18 +35,18 @@
 	F(strength, double, always, "strength", "factor on the fracture criteria [-]") \
 	F(criterion, double, always, "", "largest criterion / its limit [-]; a pair breaks at a mean of 1") \
 	F(heat, double, whenUsed, "", "internal energy per mass, where a law heats [J/kg]") \
-	MCA_VECTOR(F, fx, fy, double, always, "fx", "fy", "force of the last computeForces() [N/m]") \
+	V(force, always, shown, "of the last computeForces() [N/m]", "fx", "fy") \
 	MCA_TURN(F, torque, double, always, "", "torque of it [N]") \
-	MCA_VECTOR(F, outsideX, outsideY, double, whenUsed, "", "", "force from outside [N/m]") \
+	V(outside, whenUsed, hidden, "force from outside [N/m]", "outsideX", "outsideY") \
 	MCA_TURN(F, outsideTorque, double, whenUsed, "", "torque from outside [N]") \
-	MCA_VECTOR(F, dampX, dampY, double, whenUsed, "", "", "viscous boundary rho c A [kg/(m s)]") \
+	V(damp, whenUsed, hidden, "viscous boundary rho c A [kg/(m s)]", "dampX", "dampY") \
 	F(weight, double, always, "weight", "share of the full cell [-]") \
 	F(flags, int32_t, always, "", "Flag bits") \
 	F(id, int32_t, always, "", "caller's number, -1: padding") \
 	F(group, int32_t, always, "", "link group")
 
-/// F(name, type, presence, text) per half-contact; presence: `saved`, or `scratch`: filled anew by each step.
-#define MCA_CONTACT_FIELDS(F) \
+/// F(name, type, presence, text), V(name, presence, text, names) per half-contact; presence: `saved`, or `scratch`: filled anew by each step.
+#define MCA_CONTACT_FIELDS(F, V) \
 	F(owner, int32_t, saved, "automaton whose side this is") \
 	F(other, int32_t, saved, "automaton at the other side") \
 	F(reverse, int32_t, saved, "place of the other half") \
@@ -63,20 +61,43 @@
 	F(arm, double, saved, "arm of the owner over the distance [-]") \
 	F(perTwoG, double, scratch, "1/twoG [1/Pa]; 0 where that is zero") \
 	F(perOwnG, double, scratch, "1/G of the owner's material [1/Pa]; 0 where that is zero") \
-	MCA_CONTACT_VECTOR(F, dx, dy, double, scratch, "from owner to other in this step [m]") \
+	V(between, scratch, "from owner to other in this step [m], then the force on the owner [N/m]", "dx", "dy") \
 	F(r2, double, scratch, "its square [m2]") \
 	F(pushing, double, scratch, "1 where this side pushes, else 0") \
 	F(touch, double, scratch, "1 where any side pushes, else 0") \
 	F(along, double, scratch, "(x_j-x_i).(v_j-v_i) [m2/s]") \
 	F(press, double, scratch, "pressure force over the vector [N/m2]; before that products of stresses for the account") \
-	F(first, double, scratch, "volume term, then square of the stress, friction's work, force x") \
-	F(second, double, scratch, "(r/rest)^2, then normal stress before, coupling's work, force y") \
+	F(first, double, scratch, "volume term, then square of the stress, friction's work") \
+	F(second, double, scratch, "(r/rest)^2, then normal stress before, coupling's work") \
 	F(third, double, scratch, "shear stress before, plastic work")
-#define MCA_CONTACT_VECTOR(F, x, y, type, presence, text) F(x, type, presence, text) F(y, type, presence, text)
+
+/// F(name, presence, text), V(name, presence, text, names) per automaton: sums over its contacts, saved; presence: `always` in scenes with contacts,
+/// `whenUsed`: for the account only.
+#define MCA_CONTACT_SUMS(F, V) \
+	F(sum, always, "volume terms [-]") \
+	F(square, always, "s^2 + tau^2 [Pa2]") \
+	F(old, whenUsed, "products of the stresses before the step and the trial stresses [Pa2]") \
+	F(scale, always, "M of the radial return, for its contacts [-]") \
+	V(force, always, "[N/m]", "fx", "fy") \
+	F(torque, always, "[N]") \
+	V(volumetric, whenUsed, "share of the force [N/m]", "volX", "volY") \
+	V(viscous, whenUsed, "share of the force [N/m]", "visX", "visY")
 
 namespace mca::automata {
-#define MCA_ARRAY(name, ...) #name " "
-constexpr const char* automatonFieldNames = MCA_AUTOMATON_FIELDS(MCA_ARRAY);
-constexpr const char* contactFieldNames   = MCA_CONTACT_FIELDS(MCA_ARRAY);
-#undef MCA_ARRAY
+/// Whether an array is there in every scene, and whether it is part of the saved state.
+enum class Presence { always, whenUsed, saved, scratch };
+/// Whether McaEngine.field() shows a vector.
+enum class Scripts { shown, hidden };
+
+#define MCA_NUMBER(name, ...) #name,
+#define MCA_VECTOR(name, presence, scripts, text, ...) __VA_ARGS__,
+constexpr const char* automatonFieldNames[] = { MCA_AUTOMATON_FIELDS(MCA_NUMBER, MCA_VECTOR) };
+#undef MCA_VECTOR
+#define MCA_VECTOR(name, presence, text, ...) __VA_ARGS__,
+constexpr const char* contactFieldNames[] = { MCA_CONTACT_FIELDS(MCA_NUMBER, MCA_VECTOR) };
+constexpr const char* contactSumNames[]   = { MCA_CONTACT_SUMS(MCA_NUMBER, MCA_VECTOR) };
+#undef MCA_VECTOR
+#undef MCA_NUMBER
+/// Vectors that the solver keeps beside these rows, in the order of Solver::archive().
+constexpr const char* solverVectorNames = "accountForce.volX, accountForce.volY, accountForce.visX, accountForce.visY, searchX, searchY, tiedVx, tiedVy, tiedW";
 }

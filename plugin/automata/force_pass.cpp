@@ -28,10 +28,9 @@ namespace {
 	/// The share of the viscosity in the pushes.
 	MCA_INLINE Tensor<v8> gatherViscous(const BlockView& V, const int32_t* j)
 	{
-		Tensor<v8> push = gatherPush(V.pushOfAll, j);
-		v8         share;
-		for (int l = 0; l < lanes; l++) share[l] = V.node[nodeSize * size_t(j[l]) + 7];
-		return { push.xx * share, push.xy * share, push.yx * share, push.yy * share };
+		v8 share;
+		for (int l = 0; l < lanes; l++) share[l] = V.node[nodeSize * size_t(j[l]) + viscousShareAt];
+		return gatherPush(V.pushOfAll, j) * share;
 	}
 	template <VolumeRule rule, bool intact, bool mixed, bool viscous, bool account> void run(const BlockView& V, const Store& S, const Extra& E)
 	{
@@ -41,7 +40,7 @@ namespace {
 		for (int l = 0; l < blockSize; l++)
 			self[l] = int32_t(V.base) + l;
 		for (int g = 0; g < blockSize; g += lanes) {
-			const Vec<v8> x = V.position(g), v = V.velocity(g), none { splat(0.), splat(0.) };
+			const Vec<v8> x = load(V.position, g), v = load(V.velocity, g), none {};
 			const m8      bits  = intact ? m8 {} : widen(V.flags + g);
 			Vec<v8>       force = none, ofPressure = none, ofViscosity = none;
 			v8            torque = {};
@@ -76,31 +75,29 @@ namespace {
 					const v8 q       = mixed ? viscosityMixed<rule>(V, S, j, closing, invR2, dij, w)
 								 : w * viscousCoefficient(closing, invR2, own.linear, own.quadratic, Lattice::width(d));
 					along += q;
-					if (account) ofViscosity = { fma(q, r.x, ofViscosity.x), fma(q, r.y, ofViscosity.y) };
+					if (account) ofViscosity = fma(q, r, ofViscosity);
 				}
 				if (account) ofPressure = ofPressure - press;
 				if (account && rule == VolumeRule::affine) { // what of it is viscous
 					const Vec<v8> q = choose<intact>(on, times(gatherViscous(V, self + g) + gatherViscous(V, j), k), none);
-					ofViscosity = ofViscosity - q, ofPressure = { ofPressure.x + q.x, ofPressure.y + q.y };
+					ofViscosity     = ofViscosity - q, ofPressure += q;
 				}
-				const Vec<v8> f = linkForce(r, along, both.shear * invR2, press);
-				force = { force.x + f.x, force.y + f.y };
+				force += linkForce(r, along, both.shear * invR2, press);
 				if (mixed)
 					for (int l = 0; l < lanes; l++)
 						torque[l] = fma(arm(d, V.diameterOfAll[j[l]]), both.shear[l], torque[l]);
 				else
 					torque = fma(0.5, both.shear, torque);
 			}
-			store(V.fx + g, force.x), store(V.fy + g, force.y), store(V.torque + g, torque);
-			if (account)
-				store(E.volX + V.base + g, ofPressure.x), store(E.volY + V.base + g, ofPressure.y), store(E.visX + V.base + g, ofViscosity.x),
-					store(E.visY + V.base + g, ofViscosity.y);
+			store(V.force, g, force), store(V.torque + g, torque);
+			if (account) store(E.volumetric, V.base + g, ofPressure), store(E.viscous, V.base + g, ofViscosity);
 		}
 	}
 	void addContacts(const BlockView& V, const Extra& E)
 	{
-		for (int l = 0; l < blockSize; l++)
-			V.fx[l] += E.contactFx[V.base + l], V.fy[l] += E.contactFy[V.base + l], V.torque[l] += E.contactT[V.base + l];
+		for (int c = 0; c < dim; c++)
+			for (int l = 0; l < blockSize; l++) V.force[c][l] += E.contactForce[c][V.base + l];
+		for (int l = 0; l < blockSize; l++) V.torque[l] += E.contactT[V.base + l];
 	}
 }
 
@@ -110,8 +107,8 @@ void forcePass(Store& S, size_t b, VolumeRule rule, const Extra& E)
 	dispatch(rule, [&](auto r) {
 		choices([&](auto intact, auto mixed, auto viscous,
 		            auto account) { run<r.value, intact.value, mixed.value, viscous.value, account.value>(V, S, E); },
-		        V.block.intact, V.block.mixed, V.material.viscosity.active() || V.block.mixed, E.volX != nullptr);
+		        V.block.intact, V.block.mixed, V.material.viscosity.active() || V.block.mixed, E.account);
 	});
-	if (V.block.contact && E.contactFx) addContacts(V, E);
+	if (V.block.contact && E.contactT) addContacts(V, E);
 }
 }

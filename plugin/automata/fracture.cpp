@@ -77,7 +77,7 @@ double Solver::determinantNow(size_t i) const
 	for (int k = 0; k < nLinks; k++)
 		if (holds(S.flags[i], k)) {
 			const int32_t j = S.neighbour[linkSlot(i, k)];
-			addDyad(sum, k, Vec<double> { S.x[j] - S.x[i], S.y[j] - S.y[i] });
+			addDyad(sum, k, S.between(i, j));
 		}
 	return linkDeterminant(sum, perArea(S.diameter[i]));
 }

@@ -11,8 +11,7 @@ Solver Solver::knowing(const std::vector<Automaton>& automata, const std::vector
 	double d     = 0;
 	for (auto& a : apart)
 		d = std::max(d, a.diameter);
-	for (size_t i = 0; i < apart.size(); i++)
-		apart[i].x = 4. * d * double(i), apart[i].y = 0;
+	for (size_t i = 0; i < apart.size(); i++) apart[i].position = {}, apart[i].position[0] = 4. * d * double(i);
 	Options o;
 	o.contacts = false;
 	Solver known;
@@ -65,10 +64,10 @@ void Solver::inheritTied(const Solver& old)
 		const int64_t i = indexIn(old, O.id[o]) < 0 ? -1 : indexOf(O.id[o]);
 		if (i < 0) throw Error("automaton " + std::to_string(O.id[o]) + " is tied to a grid; it cannot be erased.");
 		S.flags[i] |= tiedBit;
-		S.perMassX[i] = O.perMassX[o], S.perMassY[i] = O.perMassY[o], S.perInertia[i] = O.perInertia[o];
+		S.perMass.set(i, O.perMass.at(o)), S.perInertia[i] = O.perInertia[o];
 		tied.push_back(int32_t(i));
 	}
-	tiedVx = old.tiedVx, tiedVy = old.tiedVy, tiedW = old.tiedW;
+	tiedVelocity = old.tiedVelocity, tiedSpin = old.tiedSpin;
 }
 
 /// Old contacts bring their stresses along through the search.

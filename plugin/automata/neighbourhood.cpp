@@ -48,16 +48,21 @@ void Solver::searchIfNeeded()
 		reach = std::min(reach, options.skin * sp.d);
 	const long    n = long(exposed.size());
 	const int32_t* who = exposed.data();
-	const double * x = S.x.data(), *y = S.y.data(), *x0 = searchX.data(), *y0 = searchY.data();
 	// no two have moved against each other by more than the diagonal of the box that holds all displacements, nor by more than twice the largest
-	double most = 0, left = 1e300, right = -1e300, low = 1e300, high = -1e300;
-#pragma omp parallel for simd schedule(static) reduction(max : most, right, high) reduction(min : left, low) if (n > 4096)
-	for (long q = 0; q < n; q++) {
-		const double dx = x[who[q]] - x0[q], dy = y[who[q]] - y0[q];
-		most = max(most, dx * dx + dy * dy);
-		left = min(left, dx), right = max(right, dx), low = min(low, dy), high = max(high, dy);
+	double diagonal2 = 0, most = 0;
+	for (int c = 0; c < dim; c++) {
+		const double *x = S.position[c].data(), *x0 = searched[c].data();
+		double        low = 1e300, high = -1e300;
+#pragma omp parallel for simd schedule(static) reduction(max : high) reduction(min : low) if (n > 4096)
+		for (long q = 0; q < n; q++) {
+			const double moved = x[who[q]] - x0[q];
+			low = min(low, moved), high = max(high, moved);
+		}
+		diagonal2 += sqr(high - low);
 	}
-	due |= n > 0 && 4. * most > sqr(reach) && sqr(right - left) + sqr(high - low) > sqr(reach);
+	if (n > 0 && diagonal2 > sqr(reach))
+		for (long q = 0; q < n; q++) most = max(most, plainSquare(S.position.at(who[q]) - searched.at(q)));
+	due |= 4. * most > sqr(reach);
 	// links break in batches, every fourth step: each batch needs a search, and a few steps do not matter to a process that takes hundreds
 	if (!due && counters.steps % breakPeriod == 0) due = breaking();
 	if (due) search();
@@ -72,24 +77,17 @@ void Solver::search()
 	}
 	if (counters.steps >= lastSort + 2000) sortInSpace();
 	for (int32_t i : contacts.rowOwner) // entries of owners that may have none any more
-		for (auto v : { &scratch.sum, &scratch.square, &scratch.old, &scratch.scale, &scratch.fx, &scratch.fy, &scratch.torque, &scratch.volX,
-		                &scratch.volY, &scratch.visX, &scratch.visY })
-			if (!v->empty()) (*v)[i] = 0.;
+		scratch.eachArray([&](auto& v, Presence) {
+			if (!v.empty()) v[i] = 0.;
+		});
 	searchContacts(S, contacts, options.skin, std::max(1, omp_get_max_threads()));
-	if (contacts.size()) {
-		for (auto v : { &scratch.sum, &scratch.square, &scratch.scale, &scratch.fx, &scratch.fy, &scratch.torque })
-			v->resize(S.size(), 0.);
-		if (options.account)
-			for (auto v : { &scratch.old, &scratch.volX, &scratch.volY, &scratch.visX, &scratch.visY })
-				v->resize(S.size(), 0.);
-	}
+	if (contacts.size()) scratch.resize(S.size(), options.account);
 	settleVolumes();
 	exposed.clear();
 	for (size_t i = 0; i < S.size(); i++)
 		if (S.id[i] >= 0 && (S.flags[i] & exposedBit)) exposed.push_back(int32_t(i));
-	searchX.resize(exposed.size()), searchY.resize(exposed.size());
-	for (size_t q = 0; q < exposed.size(); q++)
-		searchX[q] = S.x[exposed[q]], searchY[q] = S.y[exposed[q]];
+	searched.resize(exposed.size());
+	for (size_t q = 0; q < exposed.size(); q++) searched.set(q, S.position.at(exposed[q]));
 	contactAdjacent.clear();
 	if (options.sleeping && awake.size() < S.blocks.size()) {
 		for (size_t c = 0; c < contacts.size(); c++) {

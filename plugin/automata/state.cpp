@@ -113,6 +113,10 @@ namespace {
 			f.names(names);
 			((*this)(v), ...);
 		}
+		void operator()(Vectors& v)
+		{
+			for (auto& plane : v) (*this)(plane);
+		}
 		template <class T> void operator()(std::vector<T>& v, Presence p)
 		{
 			if (p != Presence::scratch) (*this)(v);
@@ -124,14 +128,14 @@ namespace {
 template <class F> void Solver::archive(F&& to)
 {
 	Fields<std::remove_reference_t<F>> f { to };
-	to.names(automatonFieldNames), to.names(contactFieldNames);
+	for (auto name : automatonFieldNames) to.names(name), to.names(" ");
+	for (auto name : contactFieldNames) to.names(name), to.names(" ");
 	store.eachArray(f);
 	contacts.eachArray(f);
 	f.MCA_EACH(store.neighbour, store.s, store.tau, store.blocks, store.species, store.materials, contacts.rowOwner, contacts.rowBegin);
-	f.MCA_EACH(
-		scratch.sum, scratch.square, scratch.old, scratch.scale, scratch.fx, scratch.fy, scratch.torque, scratch.volX, scratch.volY, scratch.visX,
-		scratch.visY);
-	f.MCA_EACH(accountForce.volX, accountForce.volY, accountForce.visX, accountForce.visY, searchX, searchY, tiedVx, tiedVy, tiedW);
+	for (auto& name : contactSumNames) to.names(&name == contactSumNames ? "scratch." : ", scratch."), to.names(name);
+	scratch.eachArray(f);
+	f.each(solverVectorNames, accountForce.volumetric, accountForce.viscous, searched, tiedVelocity, tiedSpin);
 	f.MCA_EACH(
 		place, exposed, adjacentBegin, adjacent, awake, tied, results, options, counters, time, lastDt, lastMove, dtLimit, contactSpeed2,
 		topologyChanged, searchDue, sums);
@@ -207,7 +211,7 @@ void Solver::sortInSpace()
 	lastSort       = counters.steps;
 	std::vector<SpaceKey> keys;
 	for (size_t i = 0; i < n; i++)
-		if (S.id[i] >= 0) keys.emplace_back(S.speciesOf(i), S.x[i], S.y[i], S.diameter[i], S.id[i], int32_t(i));
+		if (S.id[i] >= 0) keys.emplace_back(S.speciesOf(i), S.position.at(i), S.diameter[i], S.id[i], int32_t(i));
 	std::sort(keys.begin(), keys.end());
 	// the same blocks with the same counts: only lanes change hands, padding stays where it is
 	std::vector<int32_t> source(n), target(n);
@@ -219,12 +223,15 @@ void Solver::sortInSpace()
 		}
 	for (size_t i = 0; i < n; i++)
 		target[source[i]] = int32_t(i);
-	S.eachArray([&](auto& v, Presence) {
+	const auto permute = [&](auto& v, Presence) {
 		if (v.empty()) return;
 		auto old = v;
 		for (size_t i = 0; i < n; i++)
 			v[i] = old[source[i]];
-	});
+	};
+	S.eachArray(permute);
+	scratch.eachArray(permute);
+	eachPlane([&](auto& v) { permute(v, Presence::whenUsed); }, accountForce.volumetric, accountForce.viscous);
 	auto permuteLinks = [&](auto& v, auto map) {
 		auto old = v;
 		for (size_t i = 0; i < n; i++)
@@ -237,13 +244,6 @@ void Solver::sortInSpace()
 	for (auto v : { &contacts.owner, &contacts.other, &contacts.rowOwner, &tied })
 		for (auto& i : *v)
 			i = target[i];
-	for (auto v : { &scratch.sum, &scratch.square, &scratch.old, &scratch.scale, &scratch.fx, &scratch.fy, &scratch.torque, &scratch.volX, &scratch.volY,
-	                &scratch.visX, &scratch.visY, &accountForce.volX, &accountForce.volY, &accountForce.visX, &accountForce.visY })
-		if (!v->empty()) {
-			auto old = *v;
-			for (size_t i = 0; i < n; i++)
-				(*v)[i] = old[source[i]];
-		}
 	for (size_t i = 0; i < n; i++)
 		if (S.id[i] >= 0) place[S.id[i]] = int32_t(i);
 	for (auto& B : S.blocks)

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 namespace mca::automata {
 
@@ -12,8 +13,8 @@ void Solver::overlapError(size_t i, size_t j, double ratio) const
 {
 	const Store&       S = store;
 	std::ostringstream s;
-	s << "automata " << S.id[i] << " at (" << S.x[i] << ", " << S.y[i] << ") m and " << S.id[j] << " at (" << S.x[j] << ", " << S.y[j] << ") m are "
-	  << ratio << " rest distances apart in step " << counters.steps
+	s << "automata " << S.id[i] << " at " << S.position.at(i) << " m and " << S.id[j] << " at " << S.position.at(j) << " m are " << ratio
+	  << " rest distances apart in step " << counters.steps
 	  << "; the least allowed is 0.5 (0.2 if linked). Remedy: a smaller time step, a smaller impact speed, or no overlap in the packing.";
 	throw Error(s.str());
 }
@@ -60,18 +61,15 @@ void Solver::exchangeVolumes()
 /// What this step needs beside the links; null where the scene does not need it.
 Extra Solver::extra()
 {
-	if (contacts.size() && options.account) // switched on since the last search
-		for (auto v : { &scratch.old, &scratch.volX, &scratch.volY, &scratch.visX, &scratch.visY })
-			v->resize(store.size(), 0.);
+	if (contacts.size() && options.account) scratch.resize(store.size(), true); // switched on since the last search
 	Extra X;
 	X.perMove = lastMove > 0 ? 1. / lastMove : 0.;
 	if (contacts.size())
 		X.contactSum = scratch.sum.data(), X.contactSq = scratch.square.data(), X.contactOld = scratch.old.data(), X.scale = scratch.scale.data(),
-		X.contactFx = scratch.fx.data(), X.contactFy = scratch.fy.data(), X.contactT = scratch.torque.data();
+		X.contactForce = std::as_const(scratch.force).planes(), X.contactT = scratch.torque.data();
 	if (!options.account) return X;
-	for (auto v : { &accountForce.volX, &accountForce.volY, &accountForce.visX, &accountForce.visY })
-		v->resize(store.size(), 0.);
-	X.volX = accountForce.volX.data(), X.volY = accountForce.volY.data(), X.visX = accountForce.visX.data(), X.visY = accountForce.visY.data();
+	accountForce.volumetric.resize(store.size()), accountForce.viscous.resize(store.size());
+	X.account = true, X.volumetric = accountForce.volumetric.planes(), X.viscous = accountForce.viscous.planes();
 	return X;
 }
 

@@ -7,6 +7,7 @@
 #include "../kernels/automaton/fracture.hpp"
 #include "../kernels/automaton/links.hpp"
 #include "fields.hpp"
+#include "vectors.hpp"
 #include <algorithm>
 #include <cstdint>
 #include <vector>
@@ -14,12 +15,11 @@
 namespace mca::automata {
 
 constexpr int blockSize = 64;
-constexpr int nodeSize = 8, pushSize = 4; ///< numbers of the records that neighbours read
+constexpr int nodeSize = 8, pushSize = tensorSize; ///< numbers of the records that neighbours read
+/// Places in a node record, behind position and velocity.
+constexpr int spinAt = motionSize, dilationAt = motionSize + 1, viscousAt = motionSize + 2, viscousShareAt = motionSize + 3;
 /// place of link k of automaton i in the link arrays
 inline size_t linkSlot(size_t i, int k) { return ((i / blockSize) * nLinks + k) * blockSize + i % blockSize; }
-
-/// Whether an array of fields.hpp is there in every scene, and whether it is part of the saved state.
-enum class Presence { always, whenUsed, saved, scratch };
 
 struct Species {
 	int    material = 0;
@@ -38,21 +38,24 @@ struct Block {
 };
 
 struct Store {
-#define MCA_ARRAY(name, type, presence, shown, text) std::vector<type> name;
-	MCA_AUTOMATON_FIELDS(MCA_ARRAY)
-#undef MCA_ARRAY
+#define MCA_NUMBER(name, type, presence, shown, text) std::vector<type> name;
+#define MCA_VECTOR(name, presence, scripts, text, ...) Vectors name;
+	MCA_AUTOMATON_FIELDS(MCA_NUMBER, MCA_VECTOR)
+#undef MCA_VECTOR
+#undef MCA_NUMBER
 	// links: nLinks planes per block
 	std::vector<int32_t> neighbour; ///< automaton at the other end, itself where there is none; there the same link is Lattice::opposite(k)
 	std::vector<double>  s, tau;                         ///< J times normal and shear pair stress of this side [Pa]
 	// records that neighbours read; rebuilt in every step, so not part of the saved state
-	std::vector<double>  node; ///< 8 per automaton: x, y, vx, vy, omega, dTheta, viscous pressure, its share in push
-	std::vector<double>  push; ///< 4 per automaton, affine rule: link k is pushed by T e_k; Txx, Txy, Tyx, Tyy [N/m]
+	std::vector<double> node; ///< 8 per automaton: position, velocity, omega, dTheta, viscous pressure, its share in push
+	std::vector<double> push; ///< a tensor per automaton, affine rule: link k is pushed by T e_k [N/m]
 	/// Copies motion into the records of a block.
 	void packBlock(size_t b)
 	{
+		const auto x = position.planes(), v = velocity.planes();
 		for (size_t i = b * blockSize; i < (b + 1) * blockSize; i += lanes) {
-			scatter4(node.data() + i * nodeSize, nodeSize, load(&x[i]), load(&y[i]), load(&vx[i]), load(&vy[i]));
-			scatter4(node.data() + i * nodeSize + 4, nodeSize, load(&omega[i]), load(&dTheta[i]), v8 {}, v8 {});
+			scatter(node.data() + i * nodeSize, nodeSize, load(x, i), load(v, i));
+			scatter4(node.data() + i * nodeSize + spinAt, nodeSize, load(&omega[i]), load(&dTheta[i]), v8 {}, v8 {});
 		}
 	}
 	/// All records anew: after building, sorting, loading.
@@ -67,7 +70,7 @@ struct Store {
 	std::vector<Species> species;
 	std::vector<Material> materials;
 
-	size_t size() const { return x.size(); }
+	size_t  size() const { return id.size(); }
 	int32_t speciesOf(size_t i) const { return blocks[i / blockSize].species; }
 	/// of the pair of this species with automaton j [Pa]; q = arm of this side / distance
 	double pairTwoG(int32_t mine, size_t j, double q) const
@@ -80,40 +83,54 @@ struct Store {
 	}
 	const Material& materialOf(const Block& b) const { return materials[species[b.species].material]; }
 	const Material& materialOf(size_t i) const { return materials[species[speciesOf(i)].material]; }
-	double          distance2(size_t i, size_t j) const { return sqr(x[j] - x[i]) + sqr(y[j] - y[i]); } ///< [m2]
+	Vec<double>     between(size_t i, size_t j) const { return position.at(j) - position.at(i); }        ///< from i to j [m]
+	double          distance2(size_t i, size_t j) const { return plainSquare(between(i, j)); }           ///< [m2]
 	double          restDistance(size_t i, size_t j) const { return 0.5 * (diameter[i] + diameter[j]); } ///< [m]
 
 	/// f(array, presence) for every array with one entry per automaton
 	template <class F> void eachArray(F&& f)
 	{
-#define MCA_ARRAY(name, type, presence, shown, text) f(name, Presence::presence);
-		MCA_AUTOMATON_FIELDS(MCA_ARRAY)
-#undef MCA_ARRAY
+#define MCA_NUMBER(name, type, presence, shown, text) f(name, Presence::presence);
+#define MCA_VECTOR(name, presence, scripts, text, ...) \
+	for (auto& plane : name) f(plane, Presence::presence);
+		MCA_AUTOMATON_FIELDS(MCA_NUMBER, MCA_VECTOR)
+#undef MCA_VECTOR
+#undef MCA_NUMBER
 	}
 	/// f(name for scripts, array) for every array that McaEngine.field() shows
 	template <class F> void eachShown(F&& f) const
 	{
-#define MCA_ARRAY(name, type, presence, shown, text) \
+		const auto components = [&](Scripts scripts, const Vectors& v, std::initializer_list<const char*> names) {
+			for (int c = 0; scripts == Scripts::shown && c < dim; c++) f(names.begin()[c], v[c]);
+		};
+#define MCA_NUMBER(name, type, presence, shown, text) \
 	if (*shown) f(shown, name);
-		MCA_AUTOMATON_FIELDS(MCA_ARRAY)
-#undef MCA_ARRAY
+#define MCA_VECTOR(name, presence, scripts, text, ...) components(Scripts::scripts, name, { __VA_ARGS__ });
+		MCA_AUTOMATON_FIELDS(MCA_NUMBER, MCA_VECTOR)
+#undef MCA_VECTOR
+#undef MCA_NUMBER
 	}
 };
 
 /// Half-contacts: every contact stands twice, once for each side, sorted by owner; rows of one owner are contiguous.
 struct Contacts {
-#define MCA_ARRAY(name, type, presence, text) std::vector<type> name;
-	MCA_CONTACT_FIELDS(MCA_ARRAY)
-#undef MCA_ARRAY
+#define MCA_NUMBER(name, type, presence, text) std::vector<type> name;
+#define MCA_VECTOR(name, presence, text, ...) Vectors name;
+	MCA_CONTACT_FIELDS(MCA_NUMBER, MCA_VECTOR)
+#undef MCA_VECTOR
+#undef MCA_NUMBER
 	std::vector<int32_t> rowOwner, rowBegin; ///< rows: owner and first half-contact; rowBegin has one entry more
 	size_t               size() const { return owner.size(); }
 	size_t               rows() const { return rowOwner.size(); }
 	/// f(array, presence) for every array with one entry per half-contact
 	template <class F> void eachArray(F&& f)
 	{
-#define MCA_ARRAY(name, type, presence, text) f(name, Presence::presence);
-		MCA_CONTACT_FIELDS(MCA_ARRAY)
-#undef MCA_ARRAY
+#define MCA_NUMBER(name, type, presence, text) f(name, Presence::presence);
+#define MCA_VECTOR(name, presence, text, ...) \
+	for (auto& plane : name) f(plane, Presence::presence);
+		MCA_CONTACT_FIELDS(MCA_NUMBER, MCA_VECTOR)
+#undef MCA_VECTOR
+#undef MCA_NUMBER
 	}
 	/// What a step fills anew; sized by the search.
 	void sizeScratch()

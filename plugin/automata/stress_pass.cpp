@@ -23,7 +23,7 @@ namespace {
 	{
 		const double twoG = 2. * V.material.G, halfDt = 0.5 * dt, d = V.d;
 		for (int g = 0; g < blockSize; g += lanes) {
-			const Vec<v8> x = V.position(g), v = V.velocity(g);
+			const Vec<v8> x = load(V.position, g), v = load(V.velocity, g);
 			const v8      w = load(V.omega + g), th = load(V.dTheta + g), perOldJ = perOldRatio(th, load(V.J + g));
 			const m8      bits = intact ? m8 {} : widen(V.flags + g);
 			PairSums<v8>  sums;
@@ -32,7 +32,7 @@ namespace {
 				const int32_t* j     = V.others(k, g);
 				const Motion   other = gatherMotion(V.node, j);
 				v8             wj, thj;
-				gather2(V.node + 4, nodeSize, j, wj, thj);
+				gather2(V.node + spinAt, nodeSize, j, wj, thj);
 				Vec<v8>       r = other.position - x;
 				const Vec<v8> u = (other.velocity - v) * splat(dt);
 				v8            spin = chord((w + wj) * halfDt), stiff = splat(twoG);
@@ -43,7 +43,7 @@ namespace {
 						stiff[l]       = S.pairTwoG(V.block.species, j[l], q);
 					}
 				const m8 on   = holding(bits, k);
-				r             = choose<intact>(on, r, Vec<v8> { splat(d), splat(0.) });
+				r             = choose<intact>(on, r, ofLength(splat(d)));
 				const v8 dth  = pairDilation(th, thj, share);
 				Pair<v8> old  = V.stress(k, g);
 				old           = { old.normal * perOldJ, old.shear * perOldJ };
@@ -166,8 +166,8 @@ namespace {
 		}
 		for (int l = 0; l < blockSize; l++) { // factor = 0: the push is zero
 			double*      record = V.record + nodeSize * l;
-			const double q = record[6], all = V.mean[l] + q;
-			record[7] = all != 0. ? q / all : 0.;
+			const double q = record[viscousAt], all = V.mean[l] + q;
+			record[viscousShareAt] = all != 0. ? q / all : 0.;
 			for (int c = 0; c < pushSize; c++) V.push[pushSize * l + c] *= all * V.cell[l];
 		}
 	}

@@ -12,11 +12,11 @@ void viscousHeat(Store& S, size_t b, VolumeRule rule, double dt, BlockWork* work
 	double          sum = 0;
 	for (int l = 0; l < B.count; l++) {
 		const size_t i = b * blockSize + l;
-		double       q = viscousWork(S.node[i * nodeSize + 6], S.dTheta[i], S.J[i]) * S.cell[i];
+		double       q = viscousWork(S.node[i * nodeSize + viscousAt], S.dTheta[i], S.J[i]) * S.cell[i];
 		for (int k = 0; k < nLinks; k++) {
 			if (!holds(S.flags[i], k)) continue;
 			const int32_t       j = S.neighbour[linkSlot(i, k)];
-			const Vec<double>   r { S.x[j] - S.x[i], S.y[j] - S.y[i] }, v { S.vx[j] - S.vx[i], S.vy[j] - S.vy[i] };
+			const Vec<double>   r = S.between(i, j), v = S.velocity.at(j) - S.velocity.at(i);
 			const double        along = dot(r, v);
 			const PairViscosity c     = ofLink(B.mixed ? S.pairViscosity(B.species, j) : viscosityOf(m), rule);
 			q += 0.5 * linkWeight(S.flags[i], k)

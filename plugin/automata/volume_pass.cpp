@@ -13,16 +13,14 @@ namespace {
 	}
 	void publishDilation(const BlockView& V)
 	{
-		for (int l = 0; l < blockSize; l++)
-			V.record[nodeSize * l + 5] = V.dTheta[l];
+		for (int l = 0; l < blockSize; l++) V.record[nodeSize * l + dilationAt] = V.dTheta[l];
 	}
 
-	template <VolumeRule rule, bool intact, bool mixed, EosKind law>
-	void sumRule(const BlockView& V, const Store& S, const double* contactSum, bool init, BlockResult& out)
+	template <VolumeRule rule, bool intact, bool mixed, EosKind law> void sumRule(const BlockView& V, const double* contactSum, bool init, BlockResult& out)
 	{
 		constexpr bool        hot = LawOf<law>::heats;
 		const VolumeConstants<law> c(V.material, V.d);
-		const double *        X = S.x.data(), *Y = S.y.data(), *D = V.diameterOfAll, d = V.d;
+		const double *             D = V.diameterOfAll, d = V.d;
 		const int32_t *       nb = V.neighbour, *flags = V.flags;
 		alignas(64) double    sums[blockSize];
 		double                nearest = 1e300;
@@ -32,7 +30,7 @@ namespace {
 #pragma GCC unroll 6
 			for (int k = 0; k < nLinks; k++) {
 				const int32_t     j   = nb[k * blockSize + l];
-				const Vec<double> r   = { X[j] - V.x[l], Y[j] - V.y[l] };
+				const Vec<double> r   = V.positionOfAll.at(j) - V.position.at(l);
 				const double      dij = mixed ? 0.5 * (d + D[j]) : d;
 				double            r2  = dot(r, r);
 				if (!intact) r2 = (flags[l] >> k) & 1 ? r2 : dij * dij;
@@ -73,15 +71,15 @@ namespace {
 
 	/// Sums over the links, as the affine rule needs them.
 	struct LinkSums {
-		alignas(64) double xx[blockSize], xy[blockSize], yx[blockSize], yy[blockSize]; ///< of r (x) e_k [m]
-		alignas(64) double exx[blockSize], exy[blockSize], eyy[blockSize];             ///< of e_k (x) e_k; not filled where all links hold
-		alignas(64) double nearest2[blockSize];                                        ///< smallest r^2 [m2]
-		alignas(64) double viscous[blockSize];                                         ///< viscous pressure [Pa]; of the state, not of a sum
+		TensorLanes<blockSize>    dyads;        ///< of r (x) e_k [m]
+		SymmetricLanes<blockSize> directions;   ///< of e_k (x) e_k; not filled where all links hold
+		alignas(64) double nearest2[blockSize]; ///< smallest r^2 [m2]
+		alignas(64) double viscous[blockSize];  ///< viscous pressure [Pa]; of the state, not of a sum
 	};
 	template <bool intact> MCA_INLINE void sumLinks(const BlockView& V, LinkSums& to)
 	{
 		for (int g = 0; g < blockSize; g += lanes) {
-			const Vec<v8> own     = V.position(g), none { splat(0.), splat(0.) };
+			const Vec<v8> own     = load(V.position, g), none {};
 			const m8      bits    = intact ? m8 {} : widen(V.flags + g);
 			Tensor<v8>    sum     = {};
 			Symmetric<v8> e       = {};
@@ -95,8 +93,8 @@ namespace {
 				if (!intact) addDirection(e, k, on ? splat(1.) : splat(0.));
 				addDyad(sum, k, r);
 			}
-			store(to.xx + g, sum.xx), store(to.xy + g, sum.xy), store(to.yx + g, sum.yx), store(to.yy + g, sum.yy), store(to.nearest2 + g, nearest);
-			if (!intact) store(to.exx + g, e.xx), store(to.exy + g, e.xy), store(to.eyy + g, e.yy);
+			to.dyads.setLanes(g, sum), store(to.nearest2 + g, nearest);
+			if (!intact) to.directions.setLanes(g, e);
 		}
 	}
 	template <bool intact, EosKind law> void affineRule(const BlockView& V, const double* contactSum, double perMove, bool init, BlockResult& out)
@@ -108,16 +106,15 @@ namespace {
 		sumLinks<intact>(V, L);
 		if (init)
 			for (int l = 0; l < blockSize; l++) {
-				const AffineRest r = affineRest(c, { L.xx[l], L.xy[l], L.yx[l], L.yy[l] });
+				const AffineRest r = affineRest(c, L.dyads.at(l));
 				V.factor[l] = r.factor, V.rest[l] = r.rest;
 			}
 		double nearest = 1e300, stiffest = 0, closing = 0, widest = 1.;
 		int    clampCount = 0, badCount = 0;
 #pragma omp simd reduction(max : stiffest, closing, widest) reduction(+ : clampCount, badCount) reduction(min : nearest)
 		for (int l = 0; l < blockSize; l++) {
-			const Tensor<double>    F = { L.xx[l], L.xy[l], L.yx[l], L.yy[l] };
-			const Symmetric<double> e =
-				intact ? Symmetric<double> { Lattice::spread, 0., Lattice::spread } : Symmetric<double> { L.exx[l], L.exy[l], L.eyy[l] };
+			const Tensor<double>    F = L.dyads.at(l);
+			const Symmetric<double> e = intact ? isotropic(Lattice::spread) : L.directions.at(l);
 			const double            J = affineRatio(c, F, V.factor[l], V.rest[l], contactSum ? contactSum[l] : 0.), Jo = init ? J : V.J[l];
 			const PressureState     p = pressureStep(c, J, Jo, { V.P[l], hot ? V.heat[l] : 0. }, V.factor[l] > 0.);
 			const Tensor<double>    t     = affinePush(c, F, V.factor[l]);
@@ -126,16 +123,15 @@ namespace {
 			V.dTheta[l] = dilation(J, Jo), V.J[l] = J, V.P[l] = p.P;
 			L.viscous[l] = viscosity.pressure(V.dTheta[l], slope);
 			if (hot) V.heat[l] = p.e;
-			L.xx[l] = t.xx, L.xy[l] = t.xy, L.yx[l] = t.yx, L.yy[l] = t.yy;
+			L.dyads.set(l, t);
 			closing = max(closing, -V.dTheta[l]);
 			widest  = max(widest, J);
 			nearest = min(nearest, L.nearest2[l] / c.d2);
 			clampCount += J - 1. < c.clampAt ? 1 : 0;
 			badCount += validVolume(J) ? 0 : 1;
 		}
-		for (int g = 0; g < blockSize; g += lanes)
-			scatter4(V.push + pushSize * g, pushSize, load(L.xx + g), load(L.xy + g), load(L.yx + g), load(L.yy + g));
-		for (int l = 0; l < blockSize; l++) V.record[nodeSize * l + 6] = L.viscous[l];
+		for (int g = 0; g < blockSize; g += lanes) scatter(V.push + pushSize * g, pushSize, L.dyads.lanes(g));
+		for (int l = 0; l < blockSize; l++) V.record[nodeSize * l + viscousAt] = L.viscous[l];
 		if (contactSum) { // contacts have a volume of their own
 #pragma omp simd reduction(max : stiffest) reduction(+ : clampCount)
 			for (int l = 0; l < blockSize; l++) {
@@ -159,7 +155,7 @@ void volumePass(Store& S, size_t b, VolumeRule rule, const Extra& X, bool init, 
 			if constexpr (r.value == VolumeRule::affine)
 				choices([&](auto intact) { affineRule<intact.value, law.value>(V, contactSum, X.perMove, init, out); }, V.block.intact);
 			else
-				choices([&](auto intact, auto mixed) { sumRule<r.value, intact.value, mixed.value, law.value>(V, S, contactSum, init, out); },
+				choices([&](auto intact, auto mixed) { sumRule<r.value, intact.value, mixed.value, law.value>(V, contactSum, init, out); },
 				        V.block.intact, V.block.mixed);
 		});
 	});

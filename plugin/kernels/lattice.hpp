@@ -7,7 +7,8 @@ namespace mca {
 
 /// Hexagonal packing in plane strain, per unit thickness. Link k points at 60 k degrees in the frame of the packing. Omega0 = N0 S0 d / (2 dim).
 struct Hexagonal {
-	static constexpr int    dim = 2, neighbours = 6;
+	static constexpr int dim = mca::dim, neighbours = 6;
+	static_assert(dim == 2, "a packing of the plane");
 	static constexpr double turn = 3.14159265358979323846 / 3.; ///< angle between two links next to each other [rad]
 	/// direction of link k [-]
 	static constexpr double x[neighbours] = { 1., 0.5, -0.5, -1., -0.5, 0.5 };
@@ -18,6 +19,7 @@ struct Hexagonal {
 	static constexpr int opposite(int k) { return (k + neighbours / 2) % neighbours; }
 	static double        cell(double d) { return 0.86602540378443864676 * d * d; } ///< Omega0 [m2]
 	static double        width(double d) { return d * 0.57735026918962576451; }    ///< S0 [m]
+	static double        angle(Vec<double> r) { return std::atan2(r[1], r[0]); }   ///< in the plane [rad]
 };
 /// The packing that the solvers are built for.
 using Lattice = Hexagonal;
@@ -31,8 +33,8 @@ template <class T> MCA_INLINE void addDirection(Symmetric<T>& sum, int k, T w)
 /// v (x) direction of link k in a sum over links.
 template <class T> MCA_INLINE void addDyad(Tensor<T>& sum, int k, Vec<T> v)
 {
-	sum.xx = fma(Lattice::x[k], v.x, sum.xx), sum.yx = fma(Lattice::x[k], v.y, sum.yx);
-	if (Lattice::y[k] != 0.) sum.xy = fma(Lattice::y[k], v.x, sum.xy), sum.yy = fma(Lattice::y[k], v.y, sum.yy);
+	sum.xx = fma(Lattice::x[k], v[0], sum.xx), sum.yx = fma(Lattice::x[k], v[1], sum.yx);
+	if (Lattice::y[k] != 0.) sum.xy = fma(Lattice::y[k], v[0], sum.xy), sum.yy = fma(Lattice::y[k], v[1], sum.yy);
 }
 /// A times direction of link k.
 template <class T> MCA_INLINE Vec<T> times(const Tensor<T>& A, int k)

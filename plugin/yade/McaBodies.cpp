@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "McaBodies.hpp"
 #include "McaCast.hpp"
+#include "McaVec.hpp"
 #include <core/Scene.hpp>
 #include <pkg/common/Sphere.hpp>
 
@@ -95,8 +96,7 @@ void McaBodies::add(const Body& b, int seed)
 	if (!ms) throw mca::Error("body " + std::to_string(b.id) + " has material McaMat but not a McaState; make its state with material.newAssocState().");
 	mca::automata::Automaton a;
 	a.material = int(materialIndex(m, known, materials));
-	a.x = s.se3.position[0], a.y = s.se3.position[1];
-	a.vx = s.vel[0], a.vy = s.vel[1], a.omega = s.angVel[2];
+	a.position = vec(s.se3.position), a.velocity = vec(s.vel), a.omega = s.angVel[2];
 	a.angle         = 2. * std::atan2(s.se3.orientation.z(), s.se3.orientation.w());
 	a.mass          = s.mass;
 	a.inertia       = s.inertia[2];
@@ -115,7 +115,8 @@ void McaBodies::add(const Body& b, int seed)
 	a.eqps     = ms->plasticStrain;
 	a.id       = b.id;
 	a.group    = b.groupMask;
-	a.freeX = !(s.blockedDOFs & State::DOF_X), a.freeY = !(s.blockedDOFs & State::DOF_Y), a.freeR = !(s.blockedDOFs & State::DOF_RZ);
+	for (int c = 0; c < mca::dim; c++) a.free[c] = !(s.blockedDOFs & translation(c));
+	a.freeR = !(s.blockedDOFs & State::DOF_RZ);
 	automata.push_back(a);
 	ids.push_back(b.id);
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "McaEngine.hpp"
+#include "McaLook.hpp"
+#include "McaVec.hpp"
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
-#include "McaLook.hpp"
 
 namespace yade {
 YADE_PLUGIN((McaEngine));
@@ -95,19 +96,19 @@ void McaEngine::readExternal(Scene* scene)
 {
 	Store& S = solver->store;
 	if (!readForces && gravity == Vector2r::Zero()) {
-		if (!S.outsideX.empty()) solver->clearForces();
+		if (!S.outside.empty()) solver->clearForces();
 		return;
 	}
 	solver->clearForces();
 	if (gravity != Vector2r::Zero())
 		for (size_t i = 0; i < S.size(); i++)
-			if (S.id[i] >= 0) solver->addForce(i, S.mass[i] * gravity[0], S.mass[i] * gravity[1], 0.);
+			if (S.id[i] >= 0) solver->addForce(i, vec(gravity) * S.mass[i], 0.);
 	if (!readForces) return;
 	scene->forces.sync();
 	for (int id : order) {
 		const Vector3r &f = scene->forces.getForce(id), &t = scene->forces.getTorque(id);
 		if (!f.allFinite() || !t.allFinite()) throw mca::Error("body " + std::to_string(id) + ": an engine has put a force on it that is not finite.");
-		if (f[0] != 0 || f[1] != 0 || t[2] != 0) solver->addForce(size_t(solver->indexOf(id)), f[0], f[1], t[2]);
+		if (!isZero(vec(f)) || t[2] != 0) solver->addForce(size_t(solver->indexOf(id)), vec(f), t[2]);
 	}
 }
 

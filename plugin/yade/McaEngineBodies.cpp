@@ -3,6 +3,7 @@
 #include "McaBodies.hpp"
 #include "McaCast.hpp"
 #include "McaEngine.hpp"
+#include "McaVec.hpp"
 #include <core/Omega.hpp>
 #include <pkg/common/Sphere.hpp>
 #include <unordered_set>
@@ -127,7 +128,7 @@ void McaEngine::takeResults(size_t q)
 	const size_t    i   = size_t(solver->indexOf(order[q]));
 	const McaState& s   = static_cast<const McaState&>(*bodies[q]->state);
 	Same&           was = same[q];
-	was.pos = Vector3r(S.x[i], S.y[i], s.se3.position[2]), was.vel = Vector3r(S.vx[i], S.vy[i], 0), was.angVel = Vector3r(0, 0, S.omega[i]);
+	was.pos = vector3(S.position.at(i), s.se3.position), was.vel = vector3(S.velocity.at(i)), was.angVel = Vector3r(0, 0, S.omega[i]);
 	was.angle = S.angle[i], was.ori = Quaternionr(AngleAxisr(was.angle, Vector3r::UnitZ()));
 	was.blocked = ~0u; // to be compared with what the solver has
 	was.pressure = S.mean[i], was.volumeRatio = S.J[i], was.plasticStrain = S.eqps[i], was.temperature = S.temperature[i], was.stressZZ = S.szz[i],
@@ -207,7 +208,7 @@ void McaEngine::gather(Scene* scene)
 			}
 	for (auto& v : viscous) {
 		const auto i = solver->indexOf(int(v[0]));
-		if (i >= 0) solver->setDamping(size_t(i), v[1], v[2]);
+		if (i >= 0) solver->setDamping(size_t(i), vec(v, 1));
 	}
 	same.assign(order.size(), Same());
 	for (size_t q = 0; q < order.size(); q++)

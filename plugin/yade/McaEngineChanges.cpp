@@ -4,8 +4,9 @@
 #include "McaBodies.hpp"
 #include "McaCast.hpp"
 #include "McaEngine.hpp"
-#include <pkg/common/Sphere.hpp>
+#include "McaVec.hpp"
 #include <cstring>
+#include <pkg/common/Sphere.hpp>
 #include <unordered_set>
 
 namespace yade {
@@ -128,7 +129,9 @@ McaEngine::Change McaEngine::changeOf(size_t q, bool& rebuild)
 	c.temperature   = differs(s.temperature, was.temperature);
 	c.strength      = differs(s.strength, was.strength);
 	c.mask          = b.groupMask != was.mask;
-	c.blocked       = !tied && !(free(State::DOF_X, S.perMassX[i]) && free(State::DOF_Y, S.perMassY[i]) && free(State::DOF_RZ, S.perInertia[i]));
+	bool sameFree   = free(State::DOF_RZ, S.perInertia[i]);
+	for (int k = 0; k < mca::dim; k++) sameFree &= free(translation(k), S.perMass[k][i]);
+	c.blocked = !tied && !sameFree;
 	if (c.position || c.velocity || c.spin || c.angle) checkMotion(b);
 	if (tied && (c.position || c.velocity))
 		refuseBody(b, "it is tied to a grid, which moves it; its position and velocity cannot be set. Set those of the grid before the first step.");
@@ -175,8 +178,8 @@ void McaEngine::apply(const vector<Change>& list)
 		const auto&  s = static_cast<const McaState&>(*b.state);
 		const size_t i = size_t(solver->indexOf(order[c.place])); // sorting may have moved it
 		Same&        now = same[c.place];
-		if (c.position) now.pos = s.se3.position, S.x[i] = now.pos[0], S.y[i] = now.pos[1];
-		if (c.velocity) now.vel = s.vel, S.vx[i] = s.vel[0], S.vy[i] = s.vel[1];
+		if (c.position) now.pos = s.se3.position, S.position.set(i, vec(now.pos));
+		if (c.velocity) now.vel = s.vel, S.velocity.set(i, vec(s.vel));
 		if (c.spin) now.angVel = s.angVel, S.omega[i] = s.angVel[2];
 		if (c.angle) now.ori = s.se3.orientation, now.angle = NaN, S.angle[i] = 2. * std::atan2(s.se3.orientation.z(), s.se3.orientation.w());
 		if (c.plasticStrain) S.eqps[i] = now.plasticStrain = s.plasticStrain;
@@ -185,8 +188,7 @@ void McaEngine::apply(const vector<Change>& list)
 		if (c.mask) S.group[i] = now.mask = b.groupMask;
 		if (c.blocked) {
 			now.blocked = s.blockedDOFs;
-			S.perMassX[i] = s.blockedDOFs & State::DOF_X ? 0. : 1. / S.mass[i];
-			S.perMassY[i] = s.blockedDOFs & State::DOF_Y ? 0. : 1. / S.mass[i];
+			for (int k = 0; k < mca::dim; k++) S.perMass[k][i] = s.blockedDOFs & translation(k) ? 0. : 1. / S.mass[i];
 			S.perInertia[i] = s.blockedDOFs & State::DOF_RZ ? 0. : 1. / S.inertia[i];
 		}
 	}
@@ -225,7 +227,7 @@ bool McaEngine::writeBody(State& s, Same& was, size_t i) const
 	bool         kept = s.se3.position == was.pos && s.vel == was.vel && s.angVel == was.angVel;
 	kept &= unlike(s.se3.orientation.coeffs(), was.ori.coeffs()) == 0 || (s.se3.orientation.coeffs() - was.ori.coeffs()).norm() < 1e-12;
 	if (m) kept &= !differs(m->plasticStrain, was.plasticStrain) && !differs(m->temperature, was.temperature);
-	was.pos = Vector3r(S.x[i], S.y[i], s.se3.position[2]), was.vel = Vector3r(S.vx[i], S.vy[i], 0);
+	was.pos = vector3(S.position.at(i), s.se3.position), was.vel = vector3(S.velocity.at(i));
 	if (S.angle[i] != was.angle) was.angle = S.angle[i], was.ori = Quaternionr(AngleAxisr(was.angle, Vector3r::UnitZ()));
 	was.angVel     = Vector3r(0, 0, S.omega[i]);
 	s.se3.position = was.pos, s.se3.orientation = was.ori, s.vel = was.vel, s.angVel = was.angVel;

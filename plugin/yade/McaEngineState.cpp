@@ -2,6 +2,7 @@
 // McaEngine: what it writes to bodies and files and shows to Python.
 #include "McaBodies.hpp"
 #include "McaEngine.hpp"
+#include "McaVec.hpp"
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
 #include <pkg/common/Sphere.hpp>
@@ -190,7 +191,7 @@ py::dict McaEngine::energies()
 	d["halfStep"] = a.centre, d["total"] = a.total(), d["bookedError"] = a.bookedError();
 	d["bookedVolumetric"] = a.bookedVolumetric, d["bookedDeviatoric"] = a.bookedDeviatoric, d["bookedViscous"] = a.bookedViscous,
 	d["kineticStart"] = a.kineticStart;
-	d["momentumX"] = a.px, d["momentumY"] = a.py, d["angularMomentum"] = a.angular, d["impulseX"] = a.impulseX, d["impulseY"] = a.impulseY;
+	putVector(d, "momentum", a.momentum), d["angularMomentum"] = a.angular, putVector(d, "impulse", a.impulse);
 	return d;
 }
 
@@ -245,7 +246,7 @@ long McaEngine::automataCount() const
 Vector2r McaEngine::momentum()
 {
 	const auto a = read("momentum", [&] { return solver->account(); });
-	return Vector2r(a.px, a.py);
+	return vector3(a.momentum).head<2>();
 }
 
 void McaEngine::setViscous(const vector<int>& ids, const Vector2r& normal)
@@ -283,7 +284,7 @@ void McaEngine::setViscous(const vector<int>& ids, const Vector2r& normal)
 		}
 		for (const auto& v : added) {
 			viscous.push_back(v);
-			if (solver && isMine(int(v[0]))) solver->setDamping(size_t(solver->indexOf(int(v[0]))), v[1], v[2]);
+			if (solver && isMine(int(v[0]))) solver->setDamping(size_t(solver->indexOf(int(v[0]))), vec(v, 1));
 		}
 	});
 }

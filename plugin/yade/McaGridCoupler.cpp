@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // McaGridCoupler: its two engines, the step of both, what it saves and shows. The row: McaGridCouplerRow.cpp.
 #include "McaGridCoupler.hpp"
+#include "McaVec.hpp"
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
 #include <set>
@@ -150,21 +151,20 @@ void McaGridCoupler::forcesToNodes(Scene* scene)
 	if (foundAutomata) {
 		auto&       A = foundAutomata->automata();
 		const auto& S = A.store;
-		const bool  outside = !S.outsideX.empty();
+		const bool  outside = !S.outside.empty();
 		const Real  f = A.kick(dt) / g.kick(dt); // 1 but for the first step of one side beside an older one
 		for (const Carried& c : row) {
 			const size_t i = size_t(A.indexOf(c.id));
-			mca::interface::addForce(c, f * (outside ? S.fx[i] + S.outsideX[i] : S.fx[i]), f * (outside ? S.fy[i] + S.outsideY[i] : S.fy[i]), n);
+			mca::interface::addForce(c, (outside ? S.force.at(i) + S.outside.at(i) : S.force.at(i)) * f, n);
 		}
 	} else {
 		scene->forces.sync();
 		const Real f = dt / g.kick(dt); // NewtonIntegrator's forces act over dt
 		for (const Carried& c : row) {
 			const Vector3r& force = scene->forces.getForce(c.id);
-			mca::interface::addForce(c, f * force[0], f * force[1], n);
+			mca::interface::addForce(c, vec(force) * f, n);
 			auto& at = scene->bodies->body[size_t(c.id)]->state->se3.position; // takes back the round-off of the last move
-			const auto m = mca::interface::motion(c, n);
-			at[0] = m.x, at[1] = m.y;
+			at       = vector3(mca::interface::motion(c, n).position, at);
 		}
 	}
 }
@@ -175,13 +175,15 @@ void McaGridCoupler::motionToRow(Scene* scene, bool positions)
 	for (size_t k = 0; k < row.size(); k++) {
 		const auto m = mca::interface::motion(row[k], n);
 		if (!foundAutomata) {
-			if (!positions) scene->bodies->body[size_t(row[k].id)]->state->vel = Vector3r(m.vx, m.vy, 0);
+			if (!positions) scene->bodies->body[size_t(row[k].id)]->state->vel = vector3(m.velocity);
 			continue;
 		}
 		auto&        A = foundAutomata->automata();
 		const size_t i = size_t(A.indexOf(row[k].id));
-		if (positions) A.store.x[i] = m.x, A.store.y[i] = m.y; // no drift by round-off
-		else A.setTiedVelocity(size_t(places[k]), m.vx, m.vy, A.store.omega[i]);
+		if (positions)
+			A.store.position.set(i, m.position); // no drift by round-off
+		else
+			A.setTiedVelocity(size_t(places[k]), m.velocity, A.store.omega[i]);
 	}
 }
 
@@ -271,7 +273,8 @@ vector<Vector2r> McaGridCoupler::rowShares() const
 py::dict McaGridCoupler::energies()
 {
 	Scene* now = Omega::instance().getScene().get();
-	Real   kinetic = 0, total = 0, booked = 0, px = 0, py_ = 0, jx = 0, jy = 0, turn = 0;
+	Real                       kinetic = 0, total = 0, booked = 0, turn = 0;
+	mca::Vec<Real>             momentum {}, impulse {};
 	std::set<McaSolverEngine*> done;
 	for (auto* c : all(now)) {
 		c->prepare(now);
@@ -279,13 +282,13 @@ py::dict McaGridCoupler::energies()
 		if (c->foundAutomata && done.insert(c->foundAutomata.get()).second) {
 			c->foundAutomata->refresh(now); // what a script has changed counts already
 			const auto a = c->foundAutomata->automata().account();
-			kinetic += a.kinetic, total += a.total(), booked += a.bookedError(), px += a.px, py_ += a.py, jx += a.impulseX, jy += a.impulseY,
-				turn += a.angular;
+			kinetic += a.kinetic, total += a.total(), booked += a.bookedError(), momentum += a.momentum, impulse += a.impulse, turn += a.angular;
 		}
 		if (!done.insert(c->foundGrid.get()).second) return;
 		const auto& g = c->foundGrid->grid();
 		const auto  e = g.energy();
-		kinetic += e.kinetic, total += e.total(), booked += e.total(), px += e.momentumX, py_ += e.momentumY, jx += e.impulseX, jy += e.impulseY;
+		kinetic += e.kinetic, total += e.total(), booked += e.total(), momentum += mca::Vec<Real> { e.momentumX, e.momentumY },
+			impulse += mca::Vec<Real> { e.impulseX, e.impulseY };
 		for (int b = 0; b < g.blocks(); b++) {
 			const auto& B = g.block(b);
 			for (int j = 1; j < B.nj; j++)
@@ -300,7 +303,8 @@ py::dict McaGridCoupler::energies()
 		});
 	}
 	py::dict d;
-	d["kinetic"] = kinetic, d["total"] = total, d["booked"] = booked, d["momentumX"] = px, d["momentumY"] = py_, d["impulseX"] = jx, d["impulseY"] = jy,
+	d["kinetic"] = kinetic, d["total"] = total, d["booked"] = booked;
+	putVector(d, "momentum", momentum), putVector(d, "impulse", impulse);
 	d["angularMomentum"] = turn;
 	return d;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // McaGridCoupler: which automata make up the row, and how they are tied to the side of the block.
 #include "McaGridCoupler.hpp"
+#include "McaVec.hpp"
 #include <core/Scene.hpp>
 #include <pkg/common/Sphere.hpp>
 
@@ -46,7 +47,7 @@ vector<RowPoint> McaGridCoupler::candidates(Scene* scene, std::deque<mca::Materi
 		if (i < 0)
 			throw mca::Error(
 				"McaGridCoupler: body " + std::to_string(id) + " is not an automaton of the McaEngine (material McaMat and shape Sphere).");
-		const vector<Vector3r> x { Vector3r(S.x[size_t(i)], S.y[size_t(i)], 0) };
+		const vector<Vector3r> x { vector3(S.position.at(size_t(i))) };
 		add(*b, &x);
 	};
 	if (!ids.empty()) {
@@ -101,11 +102,11 @@ void McaGridCoupler::tieRow(Scene* scene)
 			auto&        A = foundAutomata->automata();
 			const size_t q = size_t(A.indexOf(c.id));
 			places.push_back(long(A.tie(q, true)));
-			A.setTiedVelocity(size_t(places.back()), v.vx, v.vy, A.store.omega[q]);
+			A.setTiedVelocity(size_t(places.back()), v.velocity, A.store.omega[q]);
 		} else {
 			State& st = *scene->bodies->body[size_t(c.id)]->state;
 			st.blockedDOFs |= State::DOF_X | State::DOF_Y | State::DOF_Z | State::DOF_RX | State::DOF_RY;
-			st.vel = Vector3r(v.vx, v.vy, 0);
+			st.vel = vector3(v.velocity);
 		}
 	}
 	foundGrid->carry();

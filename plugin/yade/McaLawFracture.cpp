@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // McaLaw: breaking of links and exchange of volume, at the steps and in the order of plugin/automata.
 #include "McaLaw.hpp"
+#include "McaVec.hpp"
 #include <kernels/automaton/energy.hpp>
 #include <kernels/automaton/filter.hpp>
 
@@ -59,7 +60,7 @@ Real McaLaw::determinantNow(const Row& r) const
 	for (int k = 0; k < nLinks; k++) {
 		if (!r.link[k].p) continue;
 		const Vector3r x = rows[size_t(r.link[k].other)].state->se3.position - r.state->se3.position;
-		addDyad(sum, k, mca::Vec<Real> { x[0], x[1] });
+		addDyad(sum, k, vec(x));
 	}
 	return mca::linkDeterminant(sum, mca::perArea(r.d));
 }

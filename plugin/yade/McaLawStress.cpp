@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // McaLaw: volume, pressure, pair stresses and yield of one automaton, from its neighbours: loops over its pairs that call the kernels.
 #include "McaLaw.hpp"
+#include "McaVec.hpp"
 #include <kernels/automaton/force.hpp>
 
 namespace yade {
@@ -10,7 +11,7 @@ using mca::Vec;
 using mca::VolumeRule;
 
 namespace {
-	Vec<Real> vectorTo(const State& a, const State& b) { return { b.se3.position[0] - a.se3.position[0], b.se3.position[1] - a.se3.position[1] }; }
+	Vec<Real>               vectorTo(const State& a, const State& b) { return vec(b.se3.position) - vec(a.se3.position); }
 	Real      square(Vec<Real> r) { return mca::dot(r, r); }
 	template <class F> auto byRule(int rule, F&& f) { return mca::dispatch(VolumeRule(rule), f); }
 } // namespace
@@ -47,7 +48,7 @@ template <mca::EosKind law> void McaLaw::volumeBy(Row& r, bool withContacts)
 	mca::Symmetric<Real>       directions = {};
 	Real                       nearest2 = 1e300, J = 1;
 	for (int k = 0; k < nLinks; k++) {
-		const Vec<Real> x = r.link[k].p ? vectorTo(*r.state, *rows[size_t(r.link[k].other)].state) : Vec<Real> { 0., 0. };
+		const Vec<Real> x = r.link[k].p ? vectorTo(*r.state, *rows[size_t(r.link[k].other)].state) : Vec<Real> {};
 		nearest2          = std::min(nearest2, r.link[k].p ? square(x) : c.d2);
 		addDirection(directions, k, r.link[k].p ? 1. : 0.);
 		addDyad(F, k, x);
@@ -92,7 +93,7 @@ Pair<Real> McaLaw::trial(const Row& r, const Side& s, Pair<Real> before, Real di
 {
 	const Row&      o = rows[size_t(s.other)];
 	const Real      q = mca::arm(r.d, o.d), on = r.fresh || o.fresh ? 0. : lastMove, spin = mca::pairSpin(r.motion[2], o.motion[2], q, on);
-	const Vec<Real> moved { (o.motion[0] - r.motion[0]) * on, (o.motion[1] - r.motion[1]) * on };
+	const Vec<Real> moved  = (vec(o.motion) - vec(r.motion)) * on;
 	const auto      strain = mca::strainIncrement(vectorTo(*r.state, *o.state), moved, spin);
 	const auto      now    = mca::trialStress(before, strain, dilation, s.p->twoG);
 	s.p->s[s.side] = now.normal, s.p->tau[s.side] = now.shear;

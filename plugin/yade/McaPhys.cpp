@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "McaPhys.hpp"
 #include "McaCast.hpp"
-#include <kernels/automaton/force.hpp>
-#include <kernels/automaton/links.hpp>
-#include <kernels/automaton/volume.hpp>
-#include <kernels/automaton/contact.hpp>
+#include "McaVec.hpp"
 #include <atomic>
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
+#include <kernels/automaton/contact.hpp>
+#include <kernels/automaton/force.hpp>
+#include <kernels/automaton/links.hpp>
+#include <kernels/automaton/volume.hpp>
 #include <mutex>
 #include <pkg/common/Sphere.hpp>
 #include <pkg/dem/ScGeom.hpp>
@@ -183,15 +184,13 @@ bool Law2_ScGeom_McaPhys_Mca::go(shared_ptr<IGeom>& geom, shared_ptr<IPhys>& phy
 	}
 	const McaLawState &a = *la, &b = *lb;
 	const State &      sa = *A.state, &sb = *B.state;
-	const Real         dx = sb.se3.position[0] - sa.se3.position[0], dy = sb.se3.position[1] - sa.se3.position[1],
-		   r2 = mca::dot(mca::Vec<Real> { dx, dy }, mca::Vec<Real> { dx, dy }), inv = 1. / r2;
+	const mca::Vec<Real> r  = vec(sb.se3.position) - vec(sa.se3.position);
+	const Real           r2 = dot(r, r), inv = 1. / r2;
 	p.force = p.normalForce = p.shearForce = Vector3r::Zero();
 	p.torque = Vector2r::Zero(), p.heatRate = 0, p.viscousForce = Vector2r::Zero();
 	if (!p.linked && !(p.active && p.touching(r2))) return p.linked || r2 < sqr(range * p.d); // returning false erases the pair
 
-	const mca::Vec<Real>  r { dx, dy };
-	const Real            w = p.linked && p.half ? 0.5 : 1., area = mca::pairArea(w, p.d),
-		   along = mca::dot(r, mca::Vec<Real> { sb.vel[0] - sa.vel[0], sb.vel[1] - sa.vel[1] });
+	const Real            w = p.linked && p.half ? 0.5 : 1., area = mca::pairArea(w, p.d), along = dot(r, vec(sb.vel) - vec(sa.vel));
 	const mca::Pair<Real> both { area * (p.s[0] + p.s[1]), area * (p.tau[0] + p.tau[1]) };
 	const auto c = p.linked ? mca::ofLink({ p.viscLinear, p.viscQuadratic }, VolumeRule(a.rule)) : mca::PairViscosity { p.viscLinear, p.viscQuadratic };
 	const Real q = w * mca::viscousCoefficient(along, inv, c.linear, c.quadratic, Lattice::width(p.d));
@@ -207,16 +206,14 @@ bool Law2_ScGeom_McaPhys_Mca::go(shared_ptr<IGeom>& geom, shared_ptr<IPhys>& phy
                 else push = r * (w * (a.pressureShare + b.pressureShare) * shape(p.d));
                 return mca::linkForce(r, both.normal * inv + q, both.shear * inv, push);
         });
-	p.force       = Vector3r(f.x, f.y, 0);
+	p.force                 = vector3(f);
 	p.torque      = Vector2r(mca::arm(a.diameter, b.diameter), mca::arm(b.diameter, a.diameter)) * both.shear;
-	p.heatRate    = q * along, p.viscousForce = Vector2r(q * dx, q * dy);
+	p.heatRate = q * along, p.viscousForce = vector3(r * q).head<2>();
 	if (p.linked && VolumeRule(a.rule) == VolumeRule::affine) {
-		const Real           A = a.viscousShare, B = b.viscousShare;
-		const mca::Vec<Real> v =
-			times(mca::Tensor<Real> { A * a.txx + B * b.txx, A * a.txy + B * b.txy, A * a.tyx + B * b.tyx, A * a.tyy + B * b.tyy }, p.slot);
-		p.viscousForce -= Vector2r(v.x, v.y);
+		const mca::Tensor<Real> A { a.txx, a.txy, a.tyx, a.tyy }, B { b.txx, b.txy, b.tyx, b.tyy };
+		p.viscousForce -= vector3(times(A * a.viscousShare + B * b.viscousShare, p.slot)).head<2>();
 	}
-	const Vector3r n(dx * std::sqrt(inv), dy * std::sqrt(inv), 0);
+	const Vector3r n = vector3(r * std::sqrt(inv));
 	p.normalForce = -p.force.dot(n) * n;
 	p.shearForce  = -p.force - p.normalForce;
 	return true;

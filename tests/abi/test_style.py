@@ -51,3 +51,25 @@ def test_theTestSeesLongFunctions():
 	body = '\n'.join('\tx++; // }' for _ in range(LINES + 1))
 	assert [n for n, _, _ in longFunctions('struct A {\nvoid f(int x)\n{\n%s\n}\n};\n' % body)] == [2]
 	assert longFunctions('/// Long because it is.\nvoid f(int x)\n{\n%s\n}\n' % body)[0][2] == '/// Long because it is.'
+
+
+# what names a component: r.x, perMassX, tiedVx, vx (but not the word by), txy
+COMPONENT = re.compile(r'(\.|->)[xyz]\b|[a-z0-9][XYZ]\b|[a-z][A-Z][xyz]\b|\b(?!by\b)[a-z][xy]\b|\b[a-z]?(xx|xy|yx|yy)\b')
+
+
+def namesComponents(text):
+	return [n for n, line in enumerate(text.split('\n'), 1) if not line.startswith('#') and COMPONENT.search(bare(line))]
+
+
+def test_onlyTheVectorKnowsItsComponents():
+	sources = [p for p in SOURCES if p.parent == ROOT / 'plugin' / 'automata' and p.name != 'fields.hpp']  # its rows hold the names for scripts and files
+	assert len(sources) > 20
+	wrong = ['%s:%d' % (p.relative_to(ROOT), n) for p in sources for n in namesComponents(p.read_text())]
+	assert not wrong, 'components of vectors are named; loop over `dim` of them or use Vec and Vectors:\n%s' % '\n'.join(wrong)
+
+
+def test_theTestSeesComponents():
+	for line in ('r.x', 'a->y', 'S.perMassX[i] = 0;', 'impulseY += 1;', 'double vx = 0;', 'fy[i]', 'const double dx = 1;', 'S.px', 'tiedVx[t]', 'push.xy', 'scratch.volX'):
+		assert namesComponents('\t' + line) == [1], line
+	for line in ('double x = 1; // not .x', '"%s.x"', 'r.xs', 'max(x, y)', 'S.szz[i]', 'index', 'axis', 'S.position[c][i]', 'nextY2', 'clock.by'):
+		assert not namesComponents('\t' + line), line

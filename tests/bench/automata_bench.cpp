@@ -41,8 +41,8 @@ std::unique_ptr<Solver> scene(YieldKind kind, int n, double spacing = d)
 	for (int j = 0; j < n; j++)
 		for (int i = 0; i < n; i++) {
 			Automaton a;
-			a.x = (i + 0.5 * (j & 1)) * spacing, a.y = 0.86602540378443864676 * j * spacing;
-			a.vx = 48 * std::sin(314. * a.y) + u(r), a.vy = 48 * std::sin(314. * a.x) + u(r);
+			a.position[0] = (i + 0.5 * (j & 1)) * spacing, a.position[1] = 0.86602540378443864676 * j * spacing;
+			a.velocity[0] = 48 * std::sin(314. * a.position[1]) + u(r), a.velocity[1] = 48 * std::sin(314. * a.position[0]) + u(r);
 			a.mass = m.eos.rho0 * Lattice::cell(d), a.inertia = 0.125 * a.mass * d * d, a.diameter = d, a.id = int(list.size()), a.group = 1;
 			list.push_back(a);
 		}

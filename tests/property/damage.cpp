@@ -139,12 +139,12 @@ TEST(Damage, AutomataOfAllKinds)
 	std::vector<Automaton> list = packing(1e-3, 9, 9, a, {}, 0, 0, 1);
 	append(list, packing(1e-3, 6, 6, b, { 1e-3, -6e-3, 0. }, 100, 1, 2));
 	shake(list, 50., 3);
-	list[0].freeX = list[0].freeR = false;
+	list[0].free[0] = list[0].freeR = false;
 	Solver s;
 	s.build(list, { a, b }, {});
-	s.setDamping(size_t(s.indexOf(5)), 1e5, 1e4);
+	s.setDamping(size_t(s.indexOf(5)), { 1e5, 1e4 });
 	s.tie(size_t(s.indexOf(8)), true), s.tie(size_t(s.indexOf(9)));
-	s.addForce(size_t(s.indexOf(20)), 1e3, 1e3, 0.);
+	s.addForce(size_t(s.indexOf(20)), { 1e3, 1e3 }, 0.);
 	run(s, 20);
 	automata("damping, ties, heat", s, 2);
 }
@@ -169,7 +169,7 @@ TEST(Damage, AutomataThatWereStopped)
 	Solver s;
 	impact(s, 300.);
 	run(s, 5);
-	s.store.fx[3] = std::numeric_limits<double>::quiet_NaN();
+	s.store.force[0][3] = std::numeric_limits<double>::quiet_NaN();
 	EXPECT_THROW(s.integrate(1e-9), Error);
 	automata("stopped by a number", s, 5);
 	Solver t;

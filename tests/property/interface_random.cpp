@@ -28,10 +28,10 @@ struct Coupled {
 			for (int j = 0; j <= n - i % 2; j++) {
 				automata::Automaton a;
 				const double        x = -i * pitch, y = (j + 0.5 * (i % 2)) * d;
-				a.x = c * x - s * y, a.y = s * x + c * y;
+				a.position[0] = c * x - s * y, a.position[1] = s * x + c * y;
 				a.weight   = (i == 0 ? 0.5 : 1.) * (i % 2 == 0 && (j == 0 || j == n) ? 0.5 : 1.);
 				a.diameter = d, a.mass = a.weight * m.eos.rho0 * Lattice::cell(d), a.inertia = a.mass * d * d / 8.;
-				a.vx = 20. * u(random), a.vy = 20. * u(random), a.omega = 1e4 * u(random);
+				a.velocity[0] = 20. * u(random), a.velocity[1] = 20. * u(random), a.omega = 1e4 * u(random);
 				a.id = int(list.size());
 				list.push_back(a);
 			}
@@ -52,8 +52,7 @@ struct Coupled {
 			side.x.push_back(G.open().x[size_t(k)]), side.y.push_back(G.open().y[size_t(k)]);
 		side.inX = x[1], side.inY = y[1];
 		std::vector<interface::RowPoint> points;
-		for (auto& a : list)
-			points.push_back({ a.id, a.x, a.y, a.diameter, a.mass, a.weight, &m });
+		for (auto& a : list) points.push_back({ a.id, a.position[0], a.position[1], a.diameter, a.mass, a.weight, &m });
 		row = interface::makeMap(points, side, {});
 		RC_ASSERT(row.size() == size_t(n + 1));
 		for (auto& p : interface::nodeMasses(row))
@@ -66,7 +65,7 @@ struct Coupled {
 	void carry(size_t k)
 	{
 		const auto v = interface::motion(row[k], G.open());
-		A.setTiedVelocity(place[k], v.vx, v.vy, 0.);
+		A.setTiedVelocity(place[k], v.velocity, 0.);
 	}
 	void step(double factor)
 	{
@@ -76,7 +75,7 @@ struct Coupled {
 		RC_ASSERT(A.kick(dt) == G.kick(dt));
 		for (auto& q : row) {
 			const size_t i = size_t(A.indexOf(q.id));
-			interface::addForce(q, A.store.fx[i], A.store.fy[i], G.open());
+			interface::addForce(q, A.store.force.at(i), G.open());
 		}
 		G.integrate(dt);
 		for (size_t k = 0; k < row.size(); k++) carry(k);
@@ -84,7 +83,7 @@ struct Coupled {
 		for (auto& q : row) {
 			const auto   v = interface::motion(q, G.open());
 			const size_t i = size_t(A.indexOf(q.id));
-			A.store.x[i] = v.x, A.store.y[i] = v.y;
+			A.store.position.set(i, v.position);
 		}
 	}
 	struct Sums {
@@ -94,7 +93,7 @@ struct Coupled {
 	{
 		const auto a = A.account();
 		const auto g = G.energy();
-		Sums       s { a.bookedError() + g.total(), a.kinetic + g.kinetic, a.px + g.momentumX, a.py + g.momentumY, a.angular };
+		Sums        s { a.bookedError() + g.total(), a.kinetic + g.kinetic, a.momentum[0] + g.momentumX, a.momentum[1] + g.momentumY, a.angular };
 		const auto& b = G.block(0);
 		for (int j = 1; j < b.nj; j++)
 			for (int i = 1; i < b.ni; i++) {

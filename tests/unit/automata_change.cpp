@@ -14,7 +14,8 @@ std::vector<Automaton> asInput(const Solver& s, std::vector<int32_t> without = {
 		const int64_t i = s.indexOf(id);
 		if (i < 0 || std::count(without.begin(), without.end(), id)) continue;
 		Automaton a;
-		a.x = S.x[i], a.y = S.y[i], a.vx = S.vx[i], a.vy = S.vy[i], a.omega = S.omega[i], a.angle = S.angle[i];
+		a.position[0] = S.position[0][i], a.position[1] = S.position[1][i], a.velocity[0] = S.velocity[0][i], a.velocity[1] = S.velocity[1][i],
+		a.omega = S.omega[i], a.angle = S.angle[i];
 		a.mass = S.mass[i], a.inertia = S.inertia[i], a.diameter = S.diameter[i], a.weight = S.weight[i], a.strength = S.strength[i],
 		a.eqps     = S.eqps[i];
 		a.material = S.species[S.speciesOf(i)].material, a.id = id, a.group = S.group[i];
@@ -35,8 +36,7 @@ Solver block(VolumeRule rule, int nx = 10, int ny = 10)
 	Material m  = steel();
 	m.viscosity = { 0., 0. };
 	auto list   = packing(d, nx, ny, m);
-	for (auto& a : list)
-		a.vx = -20e3 * (a.x - 5e-3), a.vy = 15e3 * (a.y - 4e-3);
+	for (auto& a : list) a.velocity[0] = -20e3 * (a.position[0] - 5e-3), a.velocity[1] = 15e3 * (a.position[1] - 4e-3);
 	Options o;
 	o.volumeRule = rule;
 	Solver s;
@@ -56,7 +56,8 @@ TEST(AutomataChange, RebuildingTheSameSetChangesNothing)
 		ASSERT_EQ(x.size(), y.size());
 		double worst = 0;
 		for (size_t i = 0; i < a.store.size(); i++)
-			if (a.store.id[i] >= 0) worst = std::max(worst, std::fabs(a.store.vx[i] - b.store.vx[size_t(b.indexOf(a.store.id[i]))]));
+			if (a.store.id[i] >= 0)
+				worst = std::max(worst, std::fabs(a.store.velocity[0][i] - b.store.velocity[0][size_t(b.indexOf(a.store.id[i]))]));
 		EXPECT_LT(worst, 1e-9 * 200) << int(rule);
 	}
 }
@@ -72,7 +73,7 @@ TEST(AutomataChange, RebuildingKeepsTheStateMidFracture)
 	run(a, 8, 0.2, 1e-9), run(b, 8, 0.2, 1e-9);
 	double worst = 0;
 	for (size_t i = 0; i < a.store.size(); i++)
-		if (a.store.id[i] >= 0) worst = std::max(worst, std::fabs(a.store.vy[i] - b.store.vy[size_t(b.indexOf(a.store.id[i]))]));
+		if (a.store.id[i] >= 0) worst = std::max(worst, std::fabs(a.store.velocity[1][i] - b.store.velocity[1][size_t(b.indexOf(a.store.id[i]))]));
 	EXPECT_LT(worst, 1e-3 * 800);
 }
 
@@ -114,14 +115,14 @@ TEST(AutomataChange, AddedAutomatonLinksInItsPlace)
 				EXPECT_EQ(b.links(), c.links());
 				for (Solver* s : { &b, &c }) { // the same kick to both
 					for (size_t i = 0; i < s->store.size(); i++)
-						s->store.vx[i] = 10 * std::sin(3e3 * s->store.y[i] + s->store.id[i]),
-						s->store.vy[i] = 10 * std::cos(2e3 * s->store.x[i]);
+						s->store.velocity[0][i] = 10 * std::sin(3e3 * s->store.position[1][i] + s->store.id[i]),
+						s->store.velocity[1][i] = 10 * std::cos(2e3 * s->store.position[0][i]);
 					s->moved();
 					run(*s, 50, 0.2, 1e-9);
 				}
 				EXPECT_NEAR(energy(b) / energy(c), 1., 1e-6) << int(rule) << ' ' << missing;
 				const auto A = b.account();
-				EXPECT_NEAR(std::hypot(A.px - c.account().px, A.py - c.account().py), 0., 1e-6) << missing;
+				EXPECT_NEAR(std::hypot(A.momentum[0] - c.account().momentum[0], A.momentum[1] - c.account().momentum[1]), 0., 1e-6) << missing;
 			}
 		}
 }

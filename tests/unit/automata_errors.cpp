@@ -52,16 +52,14 @@ TEST(AutomataErrors, NonFinitePlasticStrainIsRefused)
 TEST(AutomataErrors, CoincidentAndWrongSpacing)
 {
 	auto list  = good();
-	list[12].x = list[13].x, list[12].y = list[13].y;
+	list[12].position[0] = list[13].position[0], list[12].position[1] = list[13].position[1];
 	const std::string same = buildRefusal(list);
 	EXPECT_SAYS(same, "12");
 	EXPECT_SAYS(same, "13");
 	EXPECT_SAYS(same, "0 rest distances");
-	for (auto& a : list = good())
-		a.x *= 0.5, a.y *= 0.5; // packing twice as dense as the diameter says
+	for (auto& a : list = good()) a.position[0] *= 0.5, a.position[1] *= 0.5; // packing twice as dense as the diameter says
 	EXPECT_FALSE(buildRefusal(list).empty());
-	for (auto& a : list = good())
-		a.x *= 0.6, a.y *= 0.6;
+	for (auto& a : list = good()) a.position[0] *= 0.6, a.position[1] *= 0.6;
 	EXPECT_SAYS(buildRefusal(list), "does not match the diameter");
 	list = good();
 	append(list, packing(1e-3, 8, 8, steel(), { 7.6e-3, 3e-3, 0.5 }, 100)); // another orientation, the same group
@@ -109,7 +107,7 @@ TEST(AutomataErrors, OverlapBelowHalfADiameterNamesBothAndTheStep)
 	m.viscosity = { 0., 0. };
 	auto list   = packing(1e-3, 1, 1, m);
 	append(list, packing(1e-3, 1, 1, m, { 1.3e-3, 0, 0 }, 100, 0, 2));
-	list[1].vx = -3000;
+	list[1].velocity[0] = -3000;
 	Solver s;
 	s.build(list, { m }, {});
 	s.computeForces();
@@ -160,10 +158,10 @@ TEST(AutomataErrors, NonFiniteForceFromOutsideStopsBeforeItMoves)
 	s.build(good(), { steel() }, {});
 	s.computeForces();
 	const auto before = everything(s);
-	s.addForce(size_t(s.indexOf(20)), std::nan(""), 0., 0.);
+	s.addForce(size_t(s.indexOf(20)), { std::nan(""), 0. }, 0.);
 	EXPECT_SAYS(refusal([&] { s.integrate(1e-9); }), "automaton 20");
 	EXPECT_TRUE(sameBits(before, everything(s)));
-	EXPECT_SAYS(refusal([&] { s.setDamping(3, -1., 0.); }), "viscous boundary coefficient");
+	EXPECT_SAYS(refusal([&] { s.setDamping(3, { -1., 0. }); }), "viscous boundary coefficient");
 }
 
 TEST(AutomataErrors, DamagedBytesAreRefusedAndTheSolverIsUnchanged)

@@ -26,7 +26,7 @@ TEST(AutomataStep, SameBitsOnAnyNumberOfThreads)
 			Material a = tungsten(), b = steel(YieldKind::johnsonCook);
 			a.fracture.strain = b.fracture.strain = 0.3;
 			auto list = packing(d, 10, 40, a, { 15e-3, 0, 0 }, 0, 0, 1);
-			for (auto& q : list) q.vy = -1200;
+			for (auto& q : list) q.velocity[1] = -1200;
 			append(list, packing(d, 40, 20, b, { 0.3e-3, -20 * d, 0.01 }, 2000, 1, 2)); // more than 16 blocks
 			s.build(list, { a, b }, o);
 			run(s, 160);
@@ -52,9 +52,9 @@ TEST(AutomataStep, SleepingAndAccountChangeNoBit)
 			Material m = steel(YieldKind::linearHardening);
 			m.fracture.strain = 0.1;
 			auto list = packing(d, 60, 40, m, { 0, 0, 0.3 });
-			list[0].vx = 300, list[1].vx = 250, list[60].vx = 400;
+			list[0].velocity[0] = 300, list[1].velocity[0] = 250, list[60].velocity[0] = 400;
 			append(list, packing(d, 5, 5, m, { -8e-3, 0.2e-3, 0 }, 5000, 0, 2)); // hits later
-			for (size_t q = 2400; q < list.size(); q++) list[q].vx = 500;
+			for (size_t q = 2400; q < list.size(); q++) list[q].velocity[0] = 500;
 			Solver s;
 			s.build(list, { m }, o);
 			run(s, 150, 0.3);
@@ -102,7 +102,7 @@ TEST(AutomataStep, OrderOfTheInputChangesNoBit)
 		Material a = tungsten(), b = steel(YieldKind::linearHardening);
 		a.fracture.strain = b.fracture.strain = 0.3;
 		auto list = packing(d, 6, 18, a, { 9.2e-3, 0., 0. }, 0, 0, 1);
-		for (auto& q : list) q.vy = -700;
+		for (auto& q : list) q.velocity[1] = -700;
 		append(list, packing(d, 24, 9, b, { 0.3e-3, -9 * d, 0.02 }, 200, 1, 2));
 		if (seed) std::shuffle(list.begin(), list.end(), std::mt19937(seed));
 		Solver s;
@@ -141,9 +141,10 @@ TEST(AutomataStep, ActionIsReactionAndMomentaAreConserved)
 				double       fx = 0, fy = 0, T = 0, F = 0, M = 0;
 				for (size_t i = 0; i < S.size(); i++) {
 					if (S.id[i] < 0) continue;
-					fx += S.fx[i], fy += S.fy[i], F += std::hypot(S.fx[i], S.fy[i]);
-					T += S.x[i] * S.fy[i] - S.y[i] * S.fx[i] + S.torque[i],
-						M += std::fabs(S.x[i] * S.fy[i]) + std::fabs(S.y[i] * S.fx[i]) + std::fabs(S.torque[i]);
+					fx += S.force[0][i], fy += S.force[1][i], F += std::hypot(S.force[0][i], S.force[1][i]);
+					T += S.position[0][i] * S.force[1][i] - S.position[1][i] * S.force[0][i] + S.torque[i],
+						M += std::fabs(S.position[0][i] * S.force[1][i]) + std::fabs(S.position[1][i] * S.force[0][i])
+						+ std::fabs(S.torque[i]);
 				}
 				if (F > 0) force = std::max(force, std::hypot(fx, fy) / F), turn = std::max(turn, std::fabs(T) / M);
 				s.integrate(dt);
@@ -152,8 +153,9 @@ TEST(AutomataStep, ActionIsReactionAndMomentaAreConserved)
 			EXPECT_LT(force, 1e-14) << int(rule) << int(kind);
 			EXPECT_LT(turn, 1e-14) << int(rule) << int(kind);
 			const Account end   = s.account();
-			const double  scale = std::fabs(start.py);
-			EXPECT_LT(std::hypot(end.px - start.px, end.py - start.py), 1e-13 * scale) << int(rule) << int(kind);
+			const double  scale = std::fabs(start.momentum[1]);
+			EXPECT_LT(std::hypot(end.momentum[0] - start.momentum[0], end.momentum[1] - start.momentum[1]), 1e-13 * scale)
+				<< int(rule) << int(kind);
 			// leapfrog: positions and velocities of the account are half a step apart, which adds nothing to x x v
 			EXPECT_LT(std::fabs(end.angular - start.angular), 1e-12 * scale * 24e-3) << int(rule) << int(kind);
 		}
@@ -168,15 +170,15 @@ TEST(AutomataStep, PairForcesAreOppositeBitForBit)
 				Material a = steel(), b = unlike ? tungsten() : steel();
 				auto     list = packing(d, 2, 1, a, { 0.1e-3, 0.7e-3, angle });
 				list[1].material = 1, list[1].group = linked ? 1 : 2;
-				list[0].vx = 30 * std::cos(angle), list[0].vy = 30 * std::sin(angle) + 5, list[1].omega = 3e4;
+				list[0].velocity[0] = 30 * std::cos(angle), list[0].velocity[1] = 30 * std::sin(angle) + 5, list[1].omega = 3e4;
 				Solver s;
 				s.build(list, { a, b }, {});
 				run(s, 3, 0.3);
 				s.computeForces();
 				const size_t i = size_t(s.indexOf(0)), j = size_t(s.indexOf(1));
-				EXPECT_GT(std::fabs(s.store.fx[i]) + std::fabs(s.store.fy[i]), 1.);
-				EXPECT_EQ(s.store.fx[i], -s.store.fx[j]) << linked << unlike;
-				EXPECT_EQ(s.store.fy[i], -s.store.fy[j]) << linked << unlike;
+				EXPECT_GT(std::fabs(s.store.force[0][i]) + std::fabs(s.store.force[1][i]), 1.);
+				EXPECT_EQ(s.store.force[0][i], -s.store.force[0][j]) << linked << unlike;
+				EXPECT_EQ(s.store.force[1][i], -s.store.force[1][j]) << linked << unlike;
 			}
 }
 
@@ -210,8 +212,10 @@ TEST(AutomataStep, IndependentEnergyClosesOnWeightedRimsAndThroughFracture)
 		m.viscosity = { 0., 0. };
 		auto list   = packing(d, 10, 10, m);
 		for (auto& q : list) {
-			q.vx = 2 * std::sin(400 * q.x) * std::cos(300 * q.y), q.vy = std::cos(350 * q.x + 200 * q.y);
-			if (q.x < 1.2 * d || q.y < 0.5 * d || q.x > 8.3 * d) q.weight = factor, q.mass *= factor, q.inertia *= factor;
+			q.velocity[0] = 2 * std::sin(400 * q.position[0]) * std::cos(300 * q.position[1]),
+			q.velocity[1] = std::cos(350 * q.position[0] + 200 * q.position[1]);
+			if (q.position[0] < 1.2 * d || q.position[1] < 0.5 * d || q.position[0] > 8.3 * d)
+				q.weight = factor, q.mass *= factor, q.inertia *= factor;
 		}
 		Options o;
 		o.account = true, o.contacts = false;
@@ -245,7 +249,7 @@ TEST(AutomataStep, VeryUnlikeMaterialsAreStable)
 			light.eos.rho0 *= 0.01, light.G *= 0.01;
 			heavy.viscosity = light.viscosity = { viscosity, 5 * viscosity };
 			auto list = packing(d, 8, 10, light);
-			for (auto& q : list) q.vx = 10;
+			for (auto& q : list) q.velocity[0] = 10;
 			append(list, packing(d, 8, 10, heavy, { 8 * d, 0, 0 }, 100, 1, linked ? 1 : 2));
 			Solver s;
 			s.build(list, { light, heavy }, {});
@@ -265,7 +269,7 @@ TEST(AutomataStep, LargestStableStepFallsInTension)
 	o.contacts = false;
 	Solver       s;
 	const double dt = 1e-9;
-	for (auto& q : list) q.vx = 0.2 * q.x / dt;
+	for (auto& q : list) q.velocity[0] = 0.2 * q.position[0] / dt;
 	s.build(list, { m }, o);
 	s.computeForces(), s.integrate(dt), s.computeForces();
 	EXPECT_NEAR(s.store.J[size_t(s.indexOf(27))], 1.2, 1e-9);
@@ -311,9 +315,12 @@ TEST(AutomataStep, UnlinkedPairHasNoTensionAndFrictionIsBounded)
 		const Store&    S = s.store;
 		const Contacts& C = s.contacts;
 		for (size_t c = 0; c < C.size(); c++) {
-			const double dx = S.x[C.other[c]] - S.x[C.owner[c]], dy = S.y[C.other[c]] - S.y[C.owner[c]], r = std::hypot(dx, dy);
+			const double dx = S.position[0][C.other[c]] - S.position[0][C.owner[c]], dy = S.position[1][C.other[c]] - S.position[1][C.owner[c]],
+				     r      = std::hypot(dx, dy);
 			const double normal = (C.first[c] * dx + C.second[c] * dy) / r, shear = (-C.first[c] * dy + C.second[c] * dx) / r; // force on the owner
-			const double along = (dx * (S.vx[C.other[c]] - S.vx[C.owner[c]]) + dy * (S.vy[C.other[c]] - S.vy[C.owner[c]])) / r;
+			const double along =
+				(dx * (S.velocity[0][C.other[c]] - S.velocity[0][C.owner[c]]) + dy * (S.velocity[1][C.other[c]] - S.velocity[1][C.owner[c]]))
+				/ r;
 			if (r >= std::max(C.rest[c], C.rest[C.reverse[c]])) { EXPECT_EQ(std::fabs(C.first[c]) + std::fabs(C.second[c]), 0.); }
 			EXPECT_LE(normal, 1e-9 * (1 + std::fabs(normal)));
 			if (along >= 0) { EXPECT_LE(std::fabs(shear), C.friction[c] * -normal * (1 + 1e-9) + 1e-6); } // without viscous push
@@ -328,11 +335,11 @@ TEST(AutomataStep, HeldAndDrivenAutomata)
 	Material m    = steel();
 	auto     list = packing(d, 8, 8, m);
 	for (int k = 0; k < 8; k++) {
-		list[k].freeX = list[k].freeY = list[k].freeR = false; // bottom row stands
-		list[56 + k].freeX = list[56 + k].freeY = list[56 + k].freeR = false;
-		list[56 + k].vy = 5; // top row is driven
+		list[k].free[0] = list[k].free[1] = list[k].freeR = false; // bottom row stands
+		list[56 + k].free[0] = list[56 + k].free[1] = list[56 + k].freeR = false;
+		list[56 + k].velocity[1]                                         = 5; // top row is driven
 	}
-	list[30].freeX = false, list[31].freeR = false;
+	list[30].free[0] = false, list[31].freeR = false;
 	Options o;
 	o.account = true;
 	Solver s;
@@ -340,18 +347,18 @@ TEST(AutomataStep, HeldAndDrivenAutomata)
 	run(s, 300, 0.3);
 	for (int k = 0; k < 8; k++) {
 		const size_t i = size_t(s.indexOf(k)), j = size_t(s.indexOf(56 + k));
-		EXPECT_EQ(s.store.x[i], list[k].x);
-		EXPECT_EQ(s.store.y[i], list[k].y);
-		EXPECT_EQ(s.store.vy[j], 5.);
-		EXPECT_NEAR(s.store.y[j], list[56 + k].y + 5 * s.time, 1e-12 * d);
+		EXPECT_EQ(s.store.position[0][i], list[k].position[0]);
+		EXPECT_EQ(s.store.position[1][i], list[k].position[1]);
+		EXPECT_EQ(s.store.velocity[1][j], 5.);
+		EXPECT_NEAR(s.store.position[1][j], list[56 + k].position[1] + 5 * s.time, 1e-12 * d);
 	}
-	EXPECT_EQ(s.store.vx[size_t(s.indexOf(30))], 0.);
+	EXPECT_EQ(s.store.velocity[0][size_t(s.indexOf(30))], 0.);
 	EXPECT_EQ(s.store.omega[size_t(s.indexOf(31))], 0.);
 	const Account a = s.account();
 	EXPECT_GT(a.external, 0.);
 	EXPECT_LT(std::fabs(a.bookedError()), 1e-10 * a.external);
-	EXPECT_NEAR(a.py - 8 * list[0].mass * 5, a.impulseY, 1e-12 * std::fabs(a.impulseY)); // the driven row brought its own momentum
-	EXPECT_NEAR(a.px, a.impulseX, 1e-12 * std::fabs(a.impulseY));
+	EXPECT_NEAR(a.momentum[1] - 8 * list[0].mass * 5, a.impulse[1], 1e-12 * std::fabs(a.impulse[1])); // the driven row brought its own momentum
+	EXPECT_NEAR(a.momentum[0], a.impulse[0], 1e-12 * std::fabs(a.impulse[1]));
 }
 
 TEST(AutomataStep, GravityAndForcesFollowNewton)
@@ -364,9 +371,9 @@ TEST(AutomataStep, GravityAndForcesFollowNewton)
 	for (int k = 0; k < 100; k++) {
 		s.computeForces();
 		s.clearForces();
-		for (int i = 0; i < 25; i++) s.addForce(size_t(s.indexOf(i)), 0., -9.81 * list[i].mass, 0.);
+		for (int i = 0; i < 25; i++) s.addForce(size_t(s.indexOf(i)), { 0., -9.81 * list[i].mass }, 0.);
 		s.integrate(dt);
 	}
-	for (int i = 0; i < 25; i++) EXPECT_NEAR(s.store.vy[size_t(s.indexOf(i))], -9.81 * 100 * dt, 1e-6 * 9.81e-6);
+	for (int i = 0; i < 25; i++) EXPECT_NEAR(s.store.velocity[1][size_t(s.indexOf(i))], -9.81 * 100 * dt, 1e-6 * 9.81e-6);
 	EXPECT_NEAR(s.store.J[size_t(s.indexOf(12))], 1., 1e-14);
 }

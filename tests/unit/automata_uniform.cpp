@@ -28,15 +28,17 @@ Field deform(const std::array<double, 4>& H, double angle, const Material& m, Vo
 	s.computeForces();
 	const double dt = 1e-3 * s.criticalStep();
 	if (J0 != 1) { // first a pure compression to J0
-		for (size_t i = 0; i < S.size(); i++) S.vx[i] = (std::sqrt(J0) - 1) * S.x[i] / dt, S.vy[i] = (std::sqrt(J0) - 1) * S.y[i] / dt;
-		for (size_t i = 0; i < S.size(); i++) S.perMassX[i] = S.perMassY[i] = S.perInertia[i] = 0;
+		for (size_t i = 0; i < S.size(); i++)
+			S.velocity[0][i] = (std::sqrt(J0) - 1) * S.position[0][i] / dt, S.velocity[1][i] = (std::sqrt(J0) - 1) * S.position[1][i] / dt;
+		for (size_t i = 0; i < S.size(); i++) S.perMass[0][i] = S.perMass[1][i] = S.perInertia[i] = 0;
 		s.integrate(dt);
 		s.computeForces();
 	}
 	for (size_t i = 0; i < S.size(); i++) {
-		S.vx[i] = (H[0] * S.x[i] + H[1] * S.y[i]) / dt, S.vy[i] = (H[2] * S.x[i] + H[3] * S.y[i]) / dt;
+		S.velocity[0][i] = (H[0] * S.position[0][i] + H[1] * S.position[1][i]) / dt,
+		S.velocity[1][i] = (H[2] * S.position[0][i] + H[3] * S.position[1][i]) / dt;
 		S.omega[i] = spin * 0.5 * (H[2] - H[1]) / dt;
-		S.perMassX[i] = S.perMassY[i] = S.perInertia[i] = 0;
+		S.perMass[0][i] = S.perMass[1][i] = S.perInertia[i] = 0;
 	}
 	s.integrate(dt);
 	s.computeForces();
@@ -47,9 +49,9 @@ Field deform(const std::array<double, 4>& H, double angle, const Material& m, Vo
 	for (int j = 0; j < ny; j++)
 		for (int i = 0; i < nx; i++) {
 			const size_t q = size_t(s.indexOf(j * nx + i));
-			if (j >= ny / 2) fx += S.fx[q], fy += S.fy[q]; // force of the lower half on the upper
+			if (j >= ny / 2) fx += S.force[0][q], fy += S.force[1][q]; // force of the lower half on the upper
 			if (i > 3 && i < nx - 4 && j > 3 && j < ny - 4)
-				f.worst = std::max(f.worst, std::hypot(S.fx[q], S.fy[q]) / (d * (std::fabs(f.P) + f.Mises)));
+				f.worst = std::max(f.worst, std::hypot(S.force[0][q], S.force[1][q]) / (d * (std::fabs(f.P) + f.Mises)));
 		}
 	f.sxx = fx, f.sxy = fy;
 	return f;
@@ -193,27 +195,28 @@ TEST(AutomataUniform, RigidRotationLeavesStressUnchanged)
 	s.computeForces();
 	const double dt = 1e-3 * s.criticalStep();
 	for (size_t i = 0; i < S.size(); i++) {
-		S.perMassX[i] = S.perMassY[i] = S.perInertia[i] = 0;
-		S.vx[i] = (0.003 * S.x[i] + 0.004 * S.y[i]) / dt, S.vy[i] = (0.002 * S.x[i] - 0.001 * S.y[i]) / dt, S.omega[i] = 0.;
+		S.perMass[0][i] = S.perMass[1][i] = S.perInertia[i] = 0;
+		S.velocity[0][i]                                    = (0.003 * S.position[0][i] + 0.004 * S.position[1][i]) / dt,
+		S.velocity[1][i] = (0.002 * S.position[0][i] - 0.001 * S.position[1][i]) / dt, S.omega[i] = 0.;
 	}
 	s.integrate(dt);
 	s.computeForces();
 	const size_t c = size_t(s.indexOf(6 * 12 + 6));
-	const double P = S.P[c], q = s.equivalentStress(c), szz = S.szz[c], f0 = std::hypot(S.fx[s.indexOf(0)], S.fy[s.indexOf(0)]);
+	const double P = S.P[c], q = s.equivalentStress(c), szz = S.szz[c], f0 = std::hypot(S.force[0][s.indexOf(0)], S.force[1][s.indexOf(0)]);
 	const int    perTurn = 12, turns = 1000;
 	const double a = 2 * M_PI / perTurn;
 	double       worst = 0;
-	const auto   x0 = S.x, y0 = S.y;
+	const auto   x0 = S.position[0], y0 = S.position[1];
 	for (int k = 1; k <= perTurn * turns; k++) {
 		// to where the exact rotation has them: rounding errors of the path do not add up
 		const double C = std::cos((k % perTurn) * a), D = std::sin((k % perTurn) * a);
 		for (size_t i = 0; i < S.size(); i++) {
-			S.vx[i] = (C * x0[i] - D * y0[i] - S.x[i]) / dt, S.vy[i] = (D * x0[i] + C * y0[i] - S.y[i]) / dt;
+			S.velocity[0][i] = (C * x0[i] - D * y0[i] - S.position[0][i]) / dt, S.velocity[1][i] = (D * x0[i] + C * y0[i] - S.position[1][i]) / dt;
 			S.omega[i] = 2 * std::tan(0.5 * a) / dt;
 		}
 		s.integrate(dt);
 		s.computeForces();
-		const double f = std::hypot(S.fx[s.indexOf(0)], S.fy[s.indexOf(0)]);
+		const double f = std::hypot(S.force[0][s.indexOf(0)], S.force[1][s.indexOf(0)]);
 		for (double error : { S.P[c] / P, s.equivalentStress(c) / q, S.szz[c] / szz, f / f0 })
 			worst = std::max(worst, std::fabs(error - 1));
 	}

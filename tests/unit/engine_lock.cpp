@@ -46,8 +46,7 @@ struct Engine : yade::McaLock<GiveUp> {
 		Material m              = steel(YieldKind::perfect);
 		m.fracture.strain      = 0.02;
 		auto a = packing(1e-3, 12, 8, m), b = packing(1e-3, 8, 8, m, { 2.3e-3, 7.1e-3 }, 96, 0, 2);
-		for (auto& p : b)
-			p.vx = 40, p.vy = -400;
+		for (auto& p : b) p.velocity[0] = 40, p.velocity[1] = -400;
 		append(a, b);
 		Options o;
 		o.account = true;
@@ -69,10 +68,10 @@ struct Engine : yade::McaLock<GiveUp> {
 			s.steps       = solver.counters.steps;
 			for (int id = 0; solver.indexOf(id) >= 0; id++) {
 				const size_t i = size_t(solver.indexOf(id));
-				s.sum += S.mass[i] * S.vx[i], s.scale += S.mass[i] * std::fabs(S.vx[i]);
+				s.sum += S.mass[i] * S.velocity[0][i], s.scale += S.mass[i] * std::fabs(S.velocity[0][i]);
 				s.broken += __builtin_popcount((S.flags[i] >> hadShift) & linkBits) - __builtin_popcount(S.flags[i] & linkBits);
 			}
-			s.px    = solver.account().px;
+			s.px    = solver.account().momentum[0];
 			s.links = locked([&] { return solver.links().size(); }); // as a call within a call
 			EXPECT_EQ(s.steps, solver.counters.steps);
 			return s;

@@ -57,14 +57,11 @@ inline bool samePairs(const Material& a, const Material& b)
 }
 
 /// Force of a link: stress = sum over both sides times the area, over r [N/m over m]; push: of the pressures.
-template <class T> MCA_INLINE Vec<T> linkForce(Vec<T> r, T along, T across, Vec<T> push)
-{
-	return { fma(along, r.x, fma(-across, r.y, -push.x)), fma(along, r.y, fma(across, r.x, -push.y)) };
-}
+template <class T> MCA_INLINE Vec<T> linkForce(Vec<T> r, T along, T across, Vec<T> push) { return fma(along, r, fma(across, turned(r), -push)); }
 /// Force of a contact: stress as for links, viscous = viscousCoefficient(), pressure over r [N/m2].
 template <class T> MCA_INLINE Vec<T> contactForce(Vec<T> r, Pair<T> stress, T invR2, T viscous, T pressure)
 {
 	const T along = fma(stress.normal, invR2, viscous - pressure), across = stress.shear * invR2;
-	return { fma(along, r.x, -across * r.y), fma(along, r.y, across * r.x) };
+	return fma(along, r, turned(r) * across);
 }
 }

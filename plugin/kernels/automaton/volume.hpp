@@ -133,9 +133,7 @@ MCA_INLINE double affineFactor(double J, double rest, double det) { return det >
 /// A pressure P pushes link k by P cell affinePush() e_k [N/m]: P dV/dr, V = cell J. [1/m]
 template <EosKind law> MCA_INLINE Tensor<double> affinePush(const VolumeConstants<law>& c, const Tensor<double>& sum, double factor)
 {
-	const double         a = factor * c.perArea;
-	const Tensor<double> k = cofactor(sum);
-	return { a * k.xx, a * k.xy, a * k.yx, a * k.yy };
+	return cofactor(sum) * (factor * c.perArea);
 }
 /// (5f): P and what the deviators of the automaton's own sides do with its volume [Pa]. normals = sum of weight J s over its links, full = cell of the whole
 /// packing. In a uniform field of a whole star the second part is zero.
