@@ -149,9 +149,9 @@ void Solver::makeLinks(const Solver* old)
 	}
 	if (crowded >= 0) {
 		std::ostringstream s;
-		s << "automaton " << S.id[crowded] << " at " << S.position.at(crowded) << " m has " << most << " neighbours within "
-		  << options.linkFactor << " diameters; the hexagonal packing has at most 6. The spacing of the packing does not match the diameter "
-		  << S.diameter[crowded] << " m: build the packing with this spacing.";
+		s << "automaton " << S.id[crowded] << " at " << S.position.at(crowded) << " m has " << most << " neighbours within " << options.linkFactor
+		  << " diameters; the hexagonal packing has at most 6. The spacing of the packing does not match the diameter " << S.diameter[crowded]
+		  << " m: build the packing with this spacing.";
 		throw Error(s.str());
 	}
 	placeLinks(near, old);

@@ -95,8 +95,7 @@ namespace {
 			[&](auto& v, Presence p) { need(v.size() == n || (p == Presence::whenUsed && v.empty()), "the length of an array"); });
 		bool heats = false;
 		for (const Material& m : S.materials) heats |= m.eos.heats();
-		need(S.heat.empty() != heats && sized(S.outside, S.outsideTorque.size()) && sized(S.damp, S.damp.size()),
-		     "the length of an array");
+		need(S.heat.empty() != heats && sized(S.outside, S.outsideTorque.size()) && sized(S.damp, S.damp.size()), "the length of an array");
 		need(allOf(finite, S.position, S.velocity, S.omega, S.angle, S.rest, S.factor, S.inertia), "a position or velocity");
 		need(allOf(positive, S.mass, S.diameter, S.cell, S.invN, S.strength, S.weight), "a mass or size");
 		need(allOf(notNegative, S.perMass, S.perInertia, S.damp), "a mass or damping");

@@ -44,7 +44,7 @@ namespace {
 			std::vector<int32_t> at(begin.begin(), begin.end() - 1);
 			for (int32_t i : who) {
 				const int32_t p = at[cellOf(S, i)]++;
-				item[p] = i, position.set(p, S.position.at(i));
+				item[p]         = i, position.set(p, S.position.at(i));
 			}
 		}
 		/// The cell of a place, moved by so many cells, within the grid.

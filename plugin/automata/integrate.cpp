@@ -23,10 +23,7 @@ namespace {
 		Vec<double> force;
 		double      torque;
 	};
-	Outside outside(const Store& S, size_t i)
-	{
-		return S.outside.empty() ? Outside {} : Outside { S.outside.at(i), S.outsideTorque[i] };
-	}
+	Outside outside(const Store& S, size_t i) { return S.outside.empty() ? Outside {} : Outside { S.outside.at(i), S.outsideTorque[i] }; }
 	bool    finite(Vec<double> force, double torque) { return sumOfMagnitudes(force) + std::fabs(torque) < largestForce; }
 
 	/// One direction of the kick. force, outside (may be null), damping (may be null: none): of the lanes; inverse: 1/mass or 0.
@@ -74,8 +71,8 @@ namespace {
 void Solver::checkForces()
 {
 	const Store& S = store;
-	const bool ext = !S.outside.empty();
-	const auto force = S.force.planes(), given = S.outside.planes();
+	const bool   ext   = !S.outside.empty();
+	const auto   force = S.force.planes(), given = S.outside.planes();
 	for (int32_t b : awake)
 		results[b].bad = -1;
 	eachAwake([&](size_t b) {
@@ -93,8 +90,7 @@ void Solver::checkForces()
 			const Outside e = outside(S, i);
 			if (finite(S.force.at(i), S.torque[i]) && finite(e.force, e.torque)) continue;
 			std::ostringstream s;
-			s << "automaton " << S.id[i] << ": force " << S.force.at(i) << " N/m, from outside " << e.force
-			  << " N/m, in step " << counters.steps
+			s << "automaton " << S.id[i] << ": force " << S.force.at(i) << " N/m, from outside " << e.force << " N/m, in step " << counters.steps
 			  << " is not finite. Positions are those before the step; save and look, or use a smaller time step.";
 			throw Error(s.str());
 		}
@@ -160,10 +156,10 @@ void Solver::bookStep(double kick, double after)
 	for (size_t t = 0; t < tied.size(); t++) { // their velocity had been set before: the mean is that of old and new
 		const size_t      i = tied[t];
 		const ForceShares f = sharesOf(i);
-		const Vec<double> move = (tiedVelocity.at(t) - S.velocity.at(i)) * 0.5 * kick;
-		const double      turn = S.perInertia[i] > 0 ? 0. : 0.5 * (tiedSpin[t] - S.omega[i]) * kick; // a free spin is booked above
+		const Vec<double> move       = (tiedVelocity.at(t) - S.velocity.at(i)) * 0.5 * kick;
+		const double      turn       = S.perInertia[i] > 0 ? 0. : 0.5 * (tiedSpin[t] - S.omega[i]) * kick; // a free spin is booked above
 		const double      volumetric = plainDot(f.volumetric, move), viscosity = plainDot(f.viscous, move),
-				  all = plainDot(S.force.at(i), move) + S.torque[i] * turn;
+			     all = plainDot(S.force.at(i), move) + S.torque[i] * turn;
 		sums.bookedVolumetric += volumetric, sums.bookedViscous += viscosity, sums.bookedDeviatoric += all - volumetric - viscosity,
 			sums.external -= all;
 	}

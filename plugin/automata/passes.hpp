@@ -30,10 +30,10 @@ struct Extra {
 	const double* contactSq   = nullptr; ///< per automaton: s^2 + tau^2 of its contacts [Pa2]
 	const double* contactOld  = nullptr; ///< account: products of the stresses before the step and the trial stresses
 	double*       scale       = nullptr; ///< per automaton: M of the radial return, for its contacts
-	const double* contactT    = nullptr; ///< per automaton: torques of its contacts [N]
-	Planes<const double> contactForce = {}; ///< and their forces [N/m]
-	bool           account = false; ///< whether the shares below are wanted
-	Planes<double> volumetric = {}, viscous = {}; ///< account: shares of the force
+	const double*        contactT     = nullptr; ///< per automaton: torques of its contacts [N]
+	Planes<const double> contactForce = {};      ///< and their forces [N/m]
+	bool                 account      = false;   ///< whether the shares below are wanted
+	Planes<double>       volumetric = {}, viscous = {}; ///< account: shares of the force
 };
 
 /// Pass 1: volume (5), pressure (1)-(3), pressure share (6). With init the raw sum of volume terms is stored as the state of rest.

@@ -22,13 +22,13 @@ struct Options {
 /// One automaton as the caller gives it. Plane strain, per unit thickness, SI units.
 struct Automaton {
 	Vec<double> position {}, velocity {};
-	double  omega = 0, angle = 0;
+	double      omega = 0, angle = 0;
 	double  mass = 0, inertia = 0, diameter = 0, weight = 1, strength = 1;
 	double  eqps = 0;
 	double  temperature = 0; ///< [K]; 0: the material's reference temperature
 	int32_t material = 0, id = 0, group = 0;
-	Vec<bool> free = everyWay(); ///< per direction: moves as forces say
-	bool    freeR = true;
+	Vec<bool>   free  = everyWay(); ///< per direction: moves as forces say
+	bool        freeR = true;
 	bool    isNew = false; ///< build with an old solver: another automaton than the one that had this number there
 };
 
@@ -48,9 +48,9 @@ struct Account {
 	double bookedVolumetric = 0, bookedDeviatoric = 0, bookedViscous = 0;  ///< work of the internal forces
 	double centre = 0; ///< velocities stand half a step after stresses: kinetic energy, work from outside and of viscous forces then, minus now
 	double kineticStart = 0, heated = 0; ///< heated: dissipation that stands in the internal energy of Mie-Grueneisen materials
-	Vec<double> momentum {};                                               ///< [N s/m]
-	double angular = 0;                                                    ///< angular momentum about the origin [N s]
-	Vec<double> impulse {};                                                ///< of external forces, driven and viscous boundaries [N s/m]
+	Vec<double> momentum {};                  ///< [N s/m]
+	double      angular = 0;                  ///< angular momentum about the origin [N s]
+	Vec<double> impulse {};                   ///< of external forces, driven and viscous boundaries [N s/m]
 	/// kinetic energy gained minus all work booked: round-off
 	double bookedError() const { return kinetic - kineticStart - bookedVolumetric - bookedDeviatoric - bookedViscous - external + boundary; }
 	/// independent sum at the time of the stresses
@@ -91,7 +91,7 @@ public:
 	/// Automaton i is carried by others from now on: it keeps no mass of its own in the sums and moves with the velocity it is told.
 	/// freeSpin: its rotation stays its own. Returns its place t in the order of the calls.
 	size_t tie(size_t i, bool freeSpin = false);
-	void setTiedVelocity(size_t i, Vec<double> velocity, double omega);
+	void   setTiedVelocity(size_t i, Vec<double> velocity, double omega);
 	/// Time [s] over which the forces of a step of dt act on the velocities: half of the step before and half of this one.
 	double kick(double dt) const { return lastDt > 0 ? 0.5 * (lastDt + dt) : dt; }
 	/// Place of the caller's number in the arrays, or -1. Changes with every sort.
@@ -179,7 +179,7 @@ private:
 	};
 	void        checkForces();
 	ForceShares sharesOf(size_t i) const;
-	void        bookBlock(size_t b, double kick, double after, const Planes<const double>& velocity, const double* omega);
+	void                    bookBlock(size_t b, double kick, double after, const Planes<const double>& velocity, const double* omega);
 	void        bookStep(double kick, double after);
 	double coldEnergyAt(size_t i, double J) const;
 	double deviatorEnergyOf(size_t i) const; ///< of links and szz [J/m]
@@ -195,7 +195,7 @@ private:
 	std::vector<BlockWork>   works;
 	/// Work in a step of one block [J/m], impulses [N s/m].
 	struct StepWork {
-		double volumetric = 0, viscous = 0, deviatoric = 0, external = 0, boundary = 0, centre = 0;
+		double      volumetric = 0, viscous = 0, deviatoric = 0, external = 0, boundary = 0, centre = 0;
 		Vec<double> impulse {};
 	};
 	std::vector<StepWork>    stepWorks;
@@ -209,14 +209,14 @@ private:
 	bool                     flows = false;     ///< some material yields
 	int64_t                  lastSort = 0;
 	std::vector<std::pair<int32_t, double>> unsettled; ///< lost its links in the present search, with the volume that contacts must take over
-	Vectors                  searched; ///< positions of exposed automata at the last search
+	Vectors                                  searched;  ///< positions of exposed automata at the last search
 	std::vector<int32_t>     exposed;
 	std::vector<int32_t>     adjacentBegin, adjacent; ///< blocks next to a block by links
 	std::vector<std::pair<int32_t, int32_t>> contactAdjacent;
 	std::vector<int32_t>     awake;
 	std::vector<int32_t>     tied;
-	Vectors                  tiedVelocity; ///< before the present step
-	std::vector<double>      tiedSpin; ///< before the present step
+	Vectors                                  tiedVelocity; ///< before the present step
+	std::vector<double>                      tiedSpin;     ///< before the present step
 	double                   lastDt = 0, lastMove = 0, dtLimit = 0, contactSpeed2 = 0;
 	bool                     topologyChanged = true; ///< the list of awake blocks is out of date
 	bool                     searchDue       = false;

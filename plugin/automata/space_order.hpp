@@ -15,11 +15,14 @@ constexpr double stripHeight = 32; ///< [diameters]
 struct SpaceKey {
 	int32_t                      species;
 	std::array<int64_t, dim - 1> strip;
-	int64_t                      column; ///< of the first component
-	std::array<double, dim - 1>  across; ///< the others
+	int64_t                      column;    ///< of the first component
+	std::array<double, dim - 1>  across;    ///< the others
 	int32_t                      id, place; ///< caller's number; entry of the arrays that are sorted
 	SpaceKey(int32_t species_, Vec<double> at, double d, int32_t id_, int32_t place_)
-	        : species(species_), column(int64_t(std::floor(at[0] / d))), id(id_), place(place_)
+		: species(species_)
+		, column(int64_t(std::floor(at[0] / d)))
+		, id(id_)
+		, place(place_)
 	{
 		for (int c = 1; c < dim; c++)
 			strip[c - 1] = int64_t(std::floor(at[c] / (stripHeight * d))), across[c - 1] = at[c];

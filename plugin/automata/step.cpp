@@ -13,7 +13,8 @@ void Solver::overlapError(size_t i, size_t j, double ratio) const
 {
 	const Store&       S = store;
 	std::ostringstream s;
-	s << "automata " << S.id[i] << " at " << S.position.at(i) << " m and " << S.id[j] << " at " << S.position.at(j) << " m are " << ratio << " rest distances apart in step " << counters.steps
+	s << "automata " << S.id[i] << " at " << S.position.at(i) << " m and " << S.id[j] << " at " << S.position.at(j) << " m are " << ratio
+	  << " rest distances apart in step " << counters.steps
 	  << "; the least allowed is 0.5 (0.2 if linked). Remedy: a smaller time step, a smaller impact speed, or no overlap in the packing.";
 	throw Error(s.str());
 }

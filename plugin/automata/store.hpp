@@ -15,7 +15,7 @@
 namespace mca::automata {
 
 constexpr int blockSize = 64;
-constexpr int nodeSize = 8, pushSize = tensorSize;               ///< numbers of the records that neighbours read
+constexpr int nodeSize = 8, pushSize = tensorSize;              ///< numbers of the records that neighbours read
 constexpr int spinAt = motionSize, dilationAt = motionSize + 1; ///< places in a node record, behind position and velocity
 /// place of link k of automaton i in the link arrays
 inline size_t linkSlot(size_t i, int k) { return ((i / blockSize) * nLinks + k) * blockSize + i % blockSize; }
@@ -46,8 +46,8 @@ struct Store {
 	std::vector<int32_t> neighbour; ///< automaton at the other end, itself where there is none; there the same link is Lattice::opposite(k)
 	std::vector<double>  s, tau;                         ///< J times normal and shear pair stress of this side [Pa]
 	// records that neighbours read; rebuilt in every step, so not part of the saved state
-	std::vector<double>  node; ///< 8 per automaton: position, velocity, omega, dTheta, 0, 0
-	std::vector<double>  push; ///< a tensor per automaton, affine rule: link k is pushed by T e_k [N/m]
+	std::vector<double> node; ///< 8 per automaton: position, velocity, omega, dTheta, 0, 0
+	std::vector<double> push; ///< a tensor per automaton, affine rule: link k is pushed by T e_k [N/m]
 	/// Copies motion into the records of a block.
 	void packBlock(size_t b)
 	{
@@ -69,7 +69,7 @@ struct Store {
 	std::vector<Species> species;
 	std::vector<Material> materials;
 
-	size_t size() const { return id.size(); }
+	size_t  size() const { return id.size(); }
 	int32_t speciesOf(size_t i) const { return blocks[i / blockSize].species; }
 	/// of the pair of this species with automaton j [Pa]; q = arm of this side / distance
 	double pairTwoG(int32_t mine, size_t j, double q) const
@@ -82,7 +82,7 @@ struct Store {
 	}
 	const Material& materialOf(const Block& b) const { return materials[species[b.species].material]; }
 	const Material& materialOf(size_t i) const { return materials[species[speciesOf(i)].material]; }
-	Vec<double>     between(size_t i, size_t j) const { return position.at(j) - position.at(i); }     ///< from i to j [m]
+	Vec<double>     between(size_t i, size_t j) const { return position.at(j) - position.at(i); }        ///< from i to j [m]
 	double          distance2(size_t i, size_t j) const { return plainSquare(between(i, j)); }           ///< [m2]
 	double          restDistance(size_t i, size_t j) const { return 0.5 * (diameter[i] + diameter[j]); } ///< [m]
 

@@ -68,4 +68,4 @@ template <class F> void          eachPlane(F&& f, Vectors& v)
 		f(plane);
 }
 template <class F, class... V> void eachPlane(F&& f, V&... v) { (eachPlane(f, v), ...); }
-}
+} // namespace mca::automata

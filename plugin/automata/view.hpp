@@ -13,16 +13,16 @@ struct BlockView {
 	const Material& material = store.materialOf(block);
 	const double    d        = store.species[block.species].d; ///< diameter [m]
 	/// First of the entries of this block, of which there are `each` per automaton; null where the array is empty.
-	template <class T> T* at(std::vector<T>& v, size_t each = 1) const { return v.empty() ? nullptr : v.data() + base * each; }
+	template <class T> T*      at(std::vector<T>& v, size_t each = 1) const { return v.empty() ? nullptr : v.data() + base * each; }
 	const Planes<const double> positionOfAll = std::as_const(store.position).planes(), position = std::as_const(store.position).planes(base),
 				   velocity = std::as_const(store.velocity).planes(base);
-	const Planes<double>       force    = store.force.planes(base);
-	const double *  omega = at(store.omega), *cell = at(store.cell), *invN = at(store.invN), *strength = at(store.strength),
+	const Planes<double> force          = store.force.planes(base);
+	const double *       omega = at(store.omega), *cell = at(store.cell), *invN = at(store.invN), *strength = at(store.strength),
 		     *diameterOfAll = store.diameter.data(), *node = store.node.data(), *pushOfAll = store.push.data();
 	double *J = at(store.J), *dTheta = at(store.dTheta), *P = at(store.P), *h = at(store.h), *factor = at(store.factor), *rest = at(store.rest),
 	       *szz = at(store.szz), *eqps = at(store.eqps), *temperature = at(store.temperature), *heat = at(store.heat), *criterion = at(store.criterion),
 	       *s = at(store.s, nLinks), *tau = at(store.tau, nLinks), *record = at(store.node, nodeSize), *push = at(store.push, pushSize),
-	       *torque = at(store.torque);
+	       *torque       = at(store.torque);
 	const int32_t *flags = at(store.flags), *neighbour = at(store.neighbour, nLinks);
 	BlockView(Store& S, size_t b)
 		: store(S)

@@ -16,12 +16,11 @@ namespace {
 			V.record[nodeSize * l + dilationAt] = V.dTheta[l];
 	}
 
-	template <VolumeRule rule, bool intact, bool mixed, EosKind law>
-	void sumRule(const BlockView& V, const double* contactSum, bool init, BlockResult& out)
+	template <VolumeRule rule, bool intact, bool mixed, EosKind law> void sumRule(const BlockView& V, const double* contactSum, bool init, BlockResult& out)
 	{
 		constexpr bool        hot = LawOf<law>::heats;
 		const VolumeConstants<law> c(V.material, V.d);
-		const double *        D = V.diameterOfAll, d = V.d;
+		const double *             D = V.diameterOfAll, d = V.d;
 		const int32_t *       nb = V.neighbour, *flags = V.flags;
 		alignas(64) double    sums[blockSize];
 		double                nearest = 1e300;
@@ -72,9 +71,9 @@ namespace {
 
 	/// Sums over the links, as the affine rule needs them.
 	struct LinkSums {
-		TensorLanes<blockSize>    dyads;               ///< of r (x) e_k [m]
-		SymmetricLanes<blockSize> directions;          ///< of e_k (x) e_k; not filled where all links hold
-		alignas(64) double        nearest2[blockSize]; ///< smallest r^2 [m2]
+		TensorLanes<blockSize>    dyads;        ///< of r (x) e_k [m]
+		SymmetricLanes<blockSize> directions;   ///< of e_k (x) e_k; not filled where all links hold
+		alignas(64) double nearest2[blockSize]; ///< smallest r^2 [m2]
 	};
 	template <bool intact> MCA_INLINE void sumLinks(const BlockView& V, LinkSums& to)
 	{

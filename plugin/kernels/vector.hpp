@@ -10,8 +10,8 @@ namespace mca {
 constexpr int dim = 2;
 
 template <class T> struct Vec {
-	T                  component[dim];
-	MCA_INLINE T&      operator[](int c) { return component[c]; }
+	T                   component[dim];
+	MCA_INLINE T&       operator[](int c) { return component[c]; }
 	MCA_INLINE const T& operator[](int c) const { return component[c]; }
 };
 template <class T> struct Tensor {
@@ -24,10 +24,10 @@ template <class T> struct Symmetric {
 template <class T> MCA_INLINE Vec<T> operator-(Vec<T> a) { return { -a[0], -a[1] }; }
 template <class T> MCA_INLINE Vec<T> operator+(Vec<T> a, Vec<T> b) { return { a[0] + b[0], a[1] + b[1] }; }
 template <class T> MCA_INLINE Vec<T> operator-(Vec<T> a, Vec<T> b) { return { a[0] - b[0], a[1] - b[1] }; }
-template <class T> MCA_INLINE Vec<T> operator*(Vec<T> a, T f) { return { a[0] * f, a[1] * f }; }
-template <class T> MCA_INLINE void   operator+=(Vec<T>& a, Vec<T> b) { a[0] += b[0], a[1] += b[1]; }
+template <class T> MCA_INLINE Vec<T>   operator*(Vec<T> a, T f) { return { a[0] * f, a[1] * f }; }
+template <class T> MCA_INLINE void     operator+=(Vec<T>& a, Vec<T> b) { a[0] += b[0], a[1] += b[1]; }
 template <class F, class T> MCA_INLINE Vec<T> fma(F f, Vec<T> a, Vec<T> b) { return { fma(f, a[0], b[0]), fma(f, a[1], b[1]) }; }
-template <class T> MCA_INLINE T      dot(Vec<T> a, Vec<T> b) { return fma(a[0], b[0], a[1] * b[1]); }
+template <class T> MCA_INLINE T               dot(Vec<T> a, Vec<T> b) { return fma(a[0], b[0], a[1] * b[1]); }
 /// component of b across a, positive when b points to the left of a, times |a|
 template <class T> MCA_INLINE T cross(Vec<T> a, Vec<T> b) { return fma(a[0], b[1], -a[1] * b[0]); }
 /// a turned by a right angle to the left
@@ -39,9 +39,9 @@ inline double plainDot(Vec<double> a, Vec<double> b) { return a[0] * b[0] + a[1]
 inline double plainSquare(Vec<double> a) { return plainDot(a, a); }
 inline double plainCross(Vec<double> a, Vec<double> b) { return a[0] * b[1] - a[1] * b[0]; }
 /// sum of the magnitudes of the components
-inline double sumOfMagnitudes(Vec<double> a) { return std::fabs(a[0]) + std::fabs(a[1]); }
-inline bool   isZero(Vec<double> a) { return a[0] == 0 && a[1] == 0; }
-inline Vec<bool> everyWay() { return { true, true }; }
+inline double        sumOfMagnitudes(Vec<double> a) { return std::fabs(a[0]) + std::fabs(a[1]); }
+inline bool          isZero(Vec<double> a) { return a[0] == 0 && a[1] == 0; }
+inline Vec<bool>     everyWay() { return { true, true }; }
 inline std::ostream& operator<<(std::ostream& s, Vec<double> a) { return s << "(" << a[0] << ", " << a[1] << ")"; }
 
 template <class T> MCA_INLINE Tensor<T> operator+(const Tensor<T>& a, const Tensor<T>& b) { return { a.xx + b.xx, a.xy + b.xy, a.yx + b.yx, a.yy + b.yy }; }
@@ -53,8 +53,8 @@ inline Symmetric<double> isotropic(double f) { return { f, 0., f }; }
 
 /// Vectors in memory: a plane of numbers per component.
 template <class P> struct Planes {
-	P*                     plane[dim];
-	MCA_INLINE P*          operator[](int c) const { return plane[c]; }
+	P*            plane[dim];
+	MCA_INLINE P* operator[](int c) const { return plane[c]; }
 	MCA_INLINE Vec<double> at(size_t i) const { return { plane[0][i], plane[1][i] }; }
 	MCA_INLINE void        set(size_t i, Vec<double> v) const { plane[0][i] = v[0], plane[1][i] = v[1]; }
 };
@@ -72,11 +72,11 @@ template <int n> struct TensorLanes {
 template <int n> struct SymmetricLanes {
 	alignas(64) double xx[n], xy[n], yy[n];
 	MCA_INLINE Symmetric<double> at(int l) const { return { xx[l], xy[l], yy[l] }; }
-	MCA_INLINE void setLanes(int g, const Symmetric<v8>& t) { store(xx + g, t.xx), store(xy + g, t.xy), store(yy + g, t.yy); }
+	MCA_INLINE void              setLanes(int g, const Symmetric<v8>& t) { store(xx + g, t.xx), store(xy + g, t.xy), store(yy + g, t.yy); }
 };
 
 // Records of eight automata. Those of motion begin with position and velocity.
-constexpr int motionSize = 2 * dim, tensorSize = dim * dim;
+constexpr int   motionSize = 2 * dim, tensorSize = dim * dim;
 MCA_INLINE void gather(const double* base, int stride, const int32_t* at, Vec<v8>& a) { gather2(base, stride, at, a[0], a[1]); }
 MCA_INLINE void gather(const double* base, int stride, const int32_t* at, Vec<v8>& a, Vec<v8>& b) { gather4(base, stride, at, a[0], a[1], b[0], b[1]); }
 MCA_INLINE void gather(const double* base, int stride, const int32_t* at, Tensor<v8>& t) { gather4(base, stride, at, t.xx, t.xy, t.yx, t.yy); }

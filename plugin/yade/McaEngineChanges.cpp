@@ -129,10 +129,10 @@ McaEngine::Change McaEngine::changeOf(size_t q, bool& rebuild)
 	c.temperature   = differs(s.temperature, was.temperature);
 	c.strength      = differs(s.strength, was.strength);
 	c.mask          = b.groupMask != was.mask;
-	bool sameFree = free(State::DOF_RZ, S.perInertia[i]);
+	bool sameFree   = free(State::DOF_RZ, S.perInertia[i]);
 	for (int k = 0; k < mca::dim; k++)
 		sameFree &= free(translation(k), S.perMass[k][i]);
-	c.blocked       = !tied && !sameFree;
+	c.blocked = !tied && !sameFree;
 	if (c.position || c.velocity || c.spin || c.angle) checkMotion(b);
 	if (tied && (c.position || c.velocity))
 		refuseBody(b, "it is tied to a grid, which moves it; its position and velocity cannot be set. Set those of the grid before the first step.");

@@ -11,7 +11,7 @@ using mca::Vec;
 using mca::VolumeRule;
 
 namespace {
-	Vec<Real> vectorTo(const State& a, const State& b) { return vec(b.se3.position) - vec(a.se3.position); }
+	Vec<Real>               vectorTo(const State& a, const State& b) { return vec(b.se3.position) - vec(a.se3.position); }
 	Real      square(Vec<Real> r) { return mca::dot(r, r); }
 	template <class F> auto byRule(int rule, F&& f) { return mca::dispatch(VolumeRule(rule), f); }
 } // namespace
@@ -91,7 +91,7 @@ Pair<Real> McaLaw::trial(const Row& r, const Side& s, Pair<Real> before) const
 {
 	const Row&      o = rows[size_t(s.other)];
 	const Real      q = mca::arm(r.d, o.d), on = r.fresh || o.fresh ? 0. : lastMove, spin = mca::pairSpin(r.motion[2], o.motion[2], q, on);
-	const Vec<Real> moved = (vec(o.motion) - vec(r.motion)) * on;
+	const Vec<Real> moved  = (vec(o.motion) - vec(r.motion)) * on;
 	const auto      strain = mca::strainIncrement(vectorTo(*r.state, *o.state), moved, spin);
 	const auto      now    = mca::trialStress(before, strain, mca::pairDilation(r.l->dTheta, o.l->dTheta), s.p->twoG);
 	s.p->s[s.side] = now.normal, s.p->tau[s.side] = now.shear;

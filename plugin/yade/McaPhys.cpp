@@ -190,8 +190,7 @@ bool Law2_ScGeom_McaPhys_Mca::go(shared_ptr<IGeom>& geom, shared_ptr<IPhys>& phy
 	p.torque = Vector2r::Zero(), p.heatRate = 0, p.viscousForce = Vector2r::Zero();
 	if (!p.linked && !(p.active && p.touching(r2))) return p.linked || r2 < sqr(range * p.d); // returning false erases the pair
 
-	const Real            w = p.linked && p.half ? 0.5 : 1., area = mca::pairArea(w, p.d),
-		   along = dot(r, vec(sb.vel) - vec(sa.vel));
+	const Real            w = p.linked && p.half ? 0.5 : 1., area = mca::pairArea(w, p.d), along = dot(r, vec(sb.vel) - vec(sa.vel));
 	const mca::Pair<Real> both { area * (p.s[0] + p.s[1]), area * (p.tau[0] + p.tau[1]) };
 	const Real            q = w * mca::viscousCoefficient(along, inv, p.viscLinear, p.viscQuadratic, Lattice::width(p.d));
 	mca::Vec<Real>        f = mca::dispatch(VolumeRule(a.rule), [&](auto rule) {
@@ -206,9 +205,9 @@ bool Law2_ScGeom_McaPhys_Mca::go(shared_ptr<IGeom>& geom, shared_ptr<IPhys>& phy
                 else push = r * (w * (a.pressureShare + b.pressureShare) * shape(p.d));
                 return mca::linkForce(r, both.normal * inv + q, both.shear * inv, push);
         });
-	p.force       = vector3(f);
+	p.force                 = vector3(f);
 	p.torque      = Vector2r(mca::arm(a.diameter, b.diameter), mca::arm(b.diameter, a.diameter)) * both.shear;
-	p.heatRate    = q * along, p.viscousForce = vector3(r * q).head<2>();
+	p.heatRate = q * along, p.viscousForce = vector3(r * q).head<2>();
 	const Vector3r n = vector3(r * std::sqrt(inv));
 	p.normalForce = -p.force.dot(n) * n;
 	p.shearForce  = -p.force - p.normalForce;

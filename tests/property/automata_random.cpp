@@ -70,7 +70,8 @@ void make(Solver& solver, const Scene& s, const Options& o = {}, const Units& u 
 	const double C = std::cos(u.turn), S = std::sin(u.turn);
 	for (auto& q : list) {
 		const double x = q.position[0], y = q.position[1], vx = q.velocity[0], vy = q.velocity[1];
-		q.position[0] = (C * x - S * y) * u.length, q.position[1] = (S * x + C * y) * u.length, q.velocity[0] = (C * vx - S * vy) * u.speed(), q.velocity[1] = (S * vx + C * vy) * u.speed();
+		q.position[0] = (C * x - S * y) * u.length, q.position[1] = (S * x + C * y) * u.length, q.velocity[0] = (C * vx - S * vy) * u.speed(),
+		q.velocity[1] = (S * vx + C * vy) * u.speed();
 		q.omega /= u.duration, q.diameter *= u.length, q.mass *= u.density * u.length * u.length, q.inertia *= u.density * std::pow(u.length, 4);
 	}
 	if (order) std::shuffle(list.begin(), list.end(), std::mt19937(order));
@@ -102,9 +103,10 @@ double velocityDifference(const Solver& a, const Solver& b, const Units& u)
 	for (size_t i = 0; i < a.store.size(); i++) {
 		if (a.store.id[i] < 0) continue;
 		const size_t j = size_t(b.indexOf(a.store.id[i]));
-		const double vx = q * (C * b.store.velocity[0][j] + S * b.store.velocity[1][j]), vy = q * (C * b.store.velocity[1][j] - S * b.store.velocity[0][j]);
-		worst = std::max({ worst, std::fabs(a.store.velocity[0][i] - vx), std::fabs(a.store.velocity[1][i] - vy) });
-		scale = std::max({ scale, std::fabs(a.store.velocity[0][i]), std::fabs(a.store.velocity[1][i]) });
+		const double vx = q * (C * b.store.velocity[0][j] + S * b.store.velocity[1][j]),
+			     vy = q * (C * b.store.velocity[1][j] - S * b.store.velocity[0][j]);
+		worst           = std::max({ worst, std::fabs(a.store.velocity[0][i] - vx), std::fabs(a.store.velocity[1][i] - vy) });
+		scale           = std::max({ scale, std::fabs(a.store.velocity[0][i]), std::fabs(a.store.velocity[1][i]) });
 	}
 	return worst / scale;
 }
@@ -123,7 +125,8 @@ RC_GTEST_PROP(AutomataRandom, MomentaAreConservedAndBookedEnergyCloses, ())
 	const Account b    = solver.account();
 	double        mass = 0, reach = 0;
 	for (size_t i = 0; i < solver.store.size(); i++)
-		if (solver.store.id[i] >= 0) mass += solver.store.mass[i], reach = std::max(reach, std::hypot(solver.store.position[0][i], solver.store.position[1][i]) + 1e-3);
+		if (solver.store.id[i] >= 0)
+			mass += solver.store.mass[i], reach = std::max(reach, std::hypot(solver.store.position[0][i], solver.store.position[1][i]) + 1e-3);
 	const double p = std::sqrt(2 * mass * a.kinetic);
 	RC_ASSERT(std::hypot(b.momentum[0] - a.momentum[0], b.momentum[1] - a.momentum[1]) < 1e-13 * p);
 	RC_ASSERT(std::fabs(b.angular - a.angular) < 1e-12 * p * reach);
@@ -187,7 +190,8 @@ RC_GTEST_PROP(AutomataRandom, MirrorImage, ())
 	for (size_t i = 0; i < a.store.size(); i++) {
 		if (a.store.id[i] < 0) continue;
 		Automaton q;
-		q.position[0] = -a.store.position[0][i], q.position[1] = a.store.position[1][i], q.velocity[0] = -a.store.velocity[0][i], q.velocity[1] = a.store.velocity[1][i], q.omega = -a.store.omega[i];
+		q.position[0] = -a.store.position[0][i], q.position[1] = a.store.position[1][i], q.velocity[0] = -a.store.velocity[0][i],
+		q.velocity[1] = a.store.velocity[1][i], q.omega = -a.store.omega[i];
 		q.mass = a.store.mass[i], q.inertia = a.store.inertia[i], q.diameter = a.store.diameter[i], q.id = a.store.id[i], q.group = 1;
 		list.push_back(q);
 	}
@@ -198,7 +202,8 @@ RC_GTEST_PROP(AutomataRandom, MirrorImage, ())
 	double worst = 0, scale = 1e-12;
 	for (auto& q : list) {
 		const size_t i = size_t(a.indexOf(q.id)), j = size_t(b.indexOf(q.id));
-		worst = std::max({ worst, std::fabs(a.store.velocity[0][i] + b.store.velocity[0][j]), std::fabs(a.store.velocity[1][i] - b.store.velocity[1][j]) });
+		worst = std::max(
+			{ worst, std::fabs(a.store.velocity[0][i] + b.store.velocity[0][j]), std::fabs(a.store.velocity[1][i] - b.store.velocity[1][j]) });
 		scale = std::max({ scale, std::fabs(a.store.velocity[0][i]), std::fabs(a.store.velocity[1][i]) });
 	}
 	RC_ASSERT(worst < 1e-8 * scale);

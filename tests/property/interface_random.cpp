@@ -52,8 +52,7 @@ struct Coupled {
 			side.x.push_back(G.open().x[size_t(k)]), side.y.push_back(G.open().y[size_t(k)]);
 		side.inX = x[1], side.inY = y[1];
 		std::vector<interface::RowPoint> points;
-		for (auto& a : list)
-			points.push_back({ a.id, a.position[0], a.position[1], a.diameter, a.mass, a.weight, &m });
+		for (auto& a : list) points.push_back({ a.id, a.position[0], a.position[1], a.diameter, a.mass, a.weight, &m });
 		row = interface::makeMap(points, side, {});
 		RC_ASSERT(row.size() == size_t(n + 1));
 		for (auto& p : interface::nodeMasses(row))
@@ -94,7 +93,7 @@ struct Coupled {
 	{
 		const auto a = A.account();
 		const auto g = G.energy();
-		Sums       s { a.bookedError() + g.total(), a.kinetic + g.kinetic, a.momentum[0] + g.momentumX, a.momentum[1] + g.momentumY, a.angular };
+		Sums        s { a.bookedError() + g.total(), a.kinetic + g.kinetic, a.momentum[0] + g.momentumX, a.momentum[1] + g.momentumY, a.angular };
 		const auto& b = G.block(0);
 		for (int j = 1; j < b.nj; j++)
 			for (int i = 1; i < b.ni; i++) {

@@ -14,7 +14,8 @@ std::vector<Automaton> asInput(const Solver& s, std::vector<int32_t> without = {
 		const int64_t i = s.indexOf(id);
 		if (i < 0 || std::count(without.begin(), without.end(), id)) continue;
 		Automaton a;
-		a.position[0] = S.position[0][i], a.position[1] = S.position[1][i], a.velocity[0] = S.velocity[0][i], a.velocity[1] = S.velocity[1][i], a.omega = S.omega[i], a.angle = S.angle[i];
+		a.position[0] = S.position[0][i], a.position[1] = S.position[1][i], a.velocity[0] = S.velocity[0][i], a.velocity[1] = S.velocity[1][i],
+		a.omega = S.omega[i], a.angle = S.angle[i];
 		a.mass = S.mass[i], a.inertia = S.inertia[i], a.diameter = S.diameter[i], a.weight = S.weight[i], a.strength = S.strength[i],
 		a.eqps     = S.eqps[i];
 		a.material = S.species[S.speciesOf(i)].material, a.id = id, a.group = S.group[i];
@@ -35,8 +36,7 @@ Solver block(VolumeRule rule, int nx = 10, int ny = 10)
 	Material m  = steel();
 	m.viscosity = { 0., 0. };
 	auto list   = packing(d, nx, ny, m);
-	for (auto& a : list)
-		a.velocity[0] = -20e3 * (a.position[0] - 5e-3), a.velocity[1] = 15e3 * (a.position[1] - 4e-3);
+	for (auto& a : list) a.velocity[0] = -20e3 * (a.position[0] - 5e-3), a.velocity[1] = 15e3 * (a.position[1] - 4e-3);
 	Options o;
 	o.volumeRule = rule;
 	Solver s;
@@ -56,7 +56,8 @@ TEST(AutomataChange, RebuildingTheSameSetChangesNothing)
 		ASSERT_EQ(x.size(), y.size());
 		double worst = 0;
 		for (size_t i = 0; i < a.store.size(); i++)
-			if (a.store.id[i] >= 0) worst = std::max(worst, std::fabs(a.store.velocity[0][i] - b.store.velocity[0][size_t(b.indexOf(a.store.id[i]))]));
+			if (a.store.id[i] >= 0)
+				worst = std::max(worst, std::fabs(a.store.velocity[0][i] - b.store.velocity[0][size_t(b.indexOf(a.store.id[i]))]));
 		EXPECT_LT(worst, 1e-9 * 200) << int(rule);
 	}
 }

@@ -57,11 +57,9 @@ TEST(AutomataErrors, CoincidentAndWrongSpacing)
 	EXPECT_SAYS(same, "12");
 	EXPECT_SAYS(same, "13");
 	EXPECT_SAYS(same, "0 rest distances");
-	for (auto& a : list = good())
-		a.position[0] *= 0.5, a.position[1] *= 0.5; // packing twice as dense as the diameter says
+	for (auto& a : list = good()) a.position[0] *= 0.5, a.position[1] *= 0.5; // packing twice as dense as the diameter says
 	EXPECT_FALSE(buildRefusal(list).empty());
-	for (auto& a : list = good())
-		a.position[0] *= 0.6, a.position[1] *= 0.6;
+	for (auto& a : list = good()) a.position[0] *= 0.6, a.position[1] *= 0.6;
 	EXPECT_SAYS(buildRefusal(list), "does not match the diameter");
 	list = good();
 	append(list, packing(1e-3, 8, 8, steel(), { 7.6e-3, 3e-3, 0.5 }, 100)); // another orientation, the same group

@@ -16,8 +16,7 @@ struct Fade {
 	{
 		Material m    = steel(YieldKind::perfect);
 		auto     list = packing(d, n, n, m);
-		for (auto& a : list)
-			a.free[0] = a.free[1] = a.freeR = false, a.eqps = eqps;
+		for (auto& a : list) a.free[0] = a.free[1] = a.freeR = false, a.eqps = eqps;
 		Options o;
 		o.sleeping = o.contacts = false, o.volumeFilter = rate;
 		Solver s;

@@ -64,8 +64,7 @@ inline void shake(std::vector<Automaton>& list, double speed, unsigned seed)
 {
 	std::mt19937                           r(seed);
 	std::uniform_real_distribution<double> u(-speed, speed);
-	for (auto& a : list)
-		a.velocity[0] += u(r), a.velocity[1] += u(r), a.omega += u(r) / a.diameter;
+	for (auto& a : list) a.velocity[0] += u(r), a.velocity[1] += u(r), a.omega += u(r) / a.diameter;
 }
 
 /// n steps with `factor` of the largest stable one, growing at most 10 % a step; returns the last.
@@ -90,7 +89,8 @@ inline std::vector<double> everything(const Solver& s)
 	std::sort(ids.begin(), ids.end());
 	for (int32_t id : ids) {
 		const size_t i = size_t(s.indexOf(id));
-		for (auto a : { &S.position[0], &S.position[1], &S.velocity[0], &S.velocity[1], &S.omega, &S.angle, &S.J, &S.P, &S.szz, &S.eqps, &S.temperature })
+		for (auto a :
+		     { &S.position[0], &S.position[1], &S.velocity[0], &S.velocity[1], &S.omega, &S.angle, &S.J, &S.P, &S.szz, &S.eqps, &S.temperature })
 			v.push_back((*a)[i]);
 		if (!S.heat.empty()) v.push_back(S.heat[i]);
 		for (int k = 0; k < nLinks; k++)
@@ -118,8 +118,7 @@ inline void impact(Solver& s, double speed, YieldKind kind = YieldKind::linearHa
 	a.fracture.strain = b.fracture.strain = fractureStrain;
 	const double           d    = 1e-3;
 	std::vector<Automaton> list = packing(d, 6, 18, a, { 9.2e-3, 0., 0. }, 0, 0, 1);
-	for (auto& q : list)
-		q.velocity[1] = -speed;
+	for (auto& q : list) q.velocity[1] = -speed;
 	append(list, packing(d, 24, 9, b, { 0.3e-3, -9 * d, 0.02 }, 200, 1, 2));
 	std::mt19937                           r(seed);
 	std::uniform_real_distribution<double> u(0.9, 1.1);

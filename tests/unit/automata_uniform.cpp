@@ -28,13 +28,15 @@ Field deform(const std::array<double, 4>& H, double angle, const Material& m, Vo
 	s.computeForces();
 	const double dt = 1e-3 * s.criticalStep();
 	if (J0 != 1) { // first a pure compression to J0
-		for (size_t i = 0; i < S.size(); i++) S.velocity[0][i] = (std::sqrt(J0) - 1) * S.position[0][i] / dt, S.velocity[1][i] = (std::sqrt(J0) - 1) * S.position[1][i] / dt;
+		for (size_t i = 0; i < S.size(); i++)
+			S.velocity[0][i] = (std::sqrt(J0) - 1) * S.position[0][i] / dt, S.velocity[1][i] = (std::sqrt(J0) - 1) * S.position[1][i] / dt;
 		for (size_t i = 0; i < S.size(); i++) S.perMass[0][i] = S.perMass[1][i] = S.perInertia[i] = 0;
 		s.integrate(dt);
 		s.computeForces();
 	}
 	for (size_t i = 0; i < S.size(); i++) {
-		S.velocity[0][i] = (H[0] * S.position[0][i] + H[1] * S.position[1][i]) / dt, S.velocity[1][i] = (H[2] * S.position[0][i] + H[3] * S.position[1][i]) / dt;
+		S.velocity[0][i] = (H[0] * S.position[0][i] + H[1] * S.position[1][i]) / dt,
+		S.velocity[1][i] = (H[2] * S.position[0][i] + H[3] * S.position[1][i]) / dt;
 		S.omega[i] = spin * 0.5 * (H[2] - H[1]) / dt;
 		S.perMass[0][i] = S.perMass[1][i] = S.perInertia[i] = 0;
 	}
@@ -194,7 +196,8 @@ TEST(AutomataUniform, RigidRotationLeavesStressUnchanged)
 	const double dt = 1e-3 * s.criticalStep();
 	for (size_t i = 0; i < S.size(); i++) {
 		S.perMass[0][i] = S.perMass[1][i] = S.perInertia[i] = 0;
-		S.velocity[0][i] = (0.003 * S.position[0][i] + 0.004 * S.position[1][i]) / dt, S.velocity[1][i] = (0.002 * S.position[0][i] - 0.001 * S.position[1][i]) / dt, S.omega[i] = 0.;
+		S.velocity[0][i]                                    = (0.003 * S.position[0][i] + 0.004 * S.position[1][i]) / dt,
+		S.velocity[1][i] = (0.002 * S.position[0][i] - 0.001 * S.position[1][i]) / dt, S.omega[i] = 0.;
 	}
 	s.integrate(dt);
 	s.computeForces();

@@ -46,8 +46,7 @@ struct Engine : yade::McaLock<GiveUp> {
 		Material m              = steel(YieldKind::perfect);
 		m.fracture.strain      = 0.02;
 		auto a = packing(1e-3, 12, 8, m), b = packing(1e-3, 8, 8, m, { 2.3e-3, 7.1e-3 }, 96, 0, 2);
-		for (auto& p : b)
-			p.velocity[0] = 40, p.velocity[1] = -400;
+		for (auto& p : b) p.velocity[0] = 40, p.velocity[1] = -400;
 		append(a, b);
 		Options o;
 		o.account = true;

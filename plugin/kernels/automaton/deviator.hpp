@@ -18,7 +18,7 @@ template <class T> MCA_INLINE T product(Pair<T> a, Pair<T> b) { return fma(a.nor
 /// spin = (omega_i q_i + omega_j q_j)/(q_i + q_j) dt [-], q = distance from centre to contact.
 template <class T> MCA_INLINE Pair<T> strainIncrement(Vec<T> r, Vec<T> u, T spin)
 {
-	const Vec<T> m = fma(-0.5, u, r);
+	const Vec<T> m   = fma(-0.5, u, r);
 	const T      inv = 1. / dot(m, m);
 	return { dot(m, u) * inv, cross(m, u) * inv - spin };
 }
