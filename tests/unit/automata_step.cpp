@@ -143,7 +143,8 @@ TEST(AutomataStep, ActionIsReactionAndMomentaAreConserved)
 					if (S.id[i] < 0) continue;
 					fx += S.force[0][i], fy += S.force[1][i], F += std::hypot(S.force[0][i], S.force[1][i]);
 					T += S.position[0][i] * S.force[1][i] - S.position[1][i] * S.force[0][i] + S.torque[i],
-						M += std::fabs(S.position[0][i] * S.force[1][i]) + std::fabs(S.position[1][i] * S.force[0][i]) + std::fabs(S.torque[i]);
+						M += std::fabs(S.position[0][i] * S.force[1][i]) + std::fabs(S.position[1][i] * S.force[0][i])
+						+ std::fabs(S.torque[i]);
 				}
 				if (F > 0) force = std::max(force, std::hypot(fx, fy) / F), turn = std::max(turn, std::fabs(T) / M);
 				s.integrate(dt);
@@ -153,7 +154,8 @@ TEST(AutomataStep, ActionIsReactionAndMomentaAreConserved)
 			EXPECT_LT(turn, 1e-14) << int(rule) << int(kind);
 			const Account end   = s.account();
 			const double  scale = std::fabs(start.momentum[1]);
-			EXPECT_LT(std::hypot(end.momentum[0] - start.momentum[0], end.momentum[1] - start.momentum[1]), 1e-13 * scale) << int(rule) << int(kind);
+			EXPECT_LT(std::hypot(end.momentum[0] - start.momentum[0], end.momentum[1] - start.momentum[1]), 1e-13 * scale)
+				<< int(rule) << int(kind);
 			// leapfrog: positions and velocities of the account are half a step apart, which adds nothing to x x v
 			EXPECT_LT(std::fabs(end.angular - start.angular), 1e-12 * scale * 24e-3) << int(rule) << int(kind);
 		}
@@ -210,8 +212,10 @@ TEST(AutomataStep, IndependentEnergyClosesOnWeightedRimsAndThroughFracture)
 		m.viscosity = { 0., 0. };
 		auto list   = packing(d, 10, 10, m);
 		for (auto& q : list) {
-			q.velocity[0] = 2 * std::sin(400 * q.position[0]) * std::cos(300 * q.position[1]), q.velocity[1] = std::cos(350 * q.position[0] + 200 * q.position[1]);
-			if (q.position[0] < 1.2 * d || q.position[1] < 0.5 * d || q.position[0] > 8.3 * d) q.weight = factor, q.mass *= factor, q.inertia *= factor;
+			q.velocity[0] = 2 * std::sin(400 * q.position[0]) * std::cos(300 * q.position[1]),
+			q.velocity[1] = std::cos(350 * q.position[0] + 200 * q.position[1]);
+			if (q.position[0] < 1.2 * d || q.position[1] < 0.5 * d || q.position[0] > 8.3 * d)
+				q.weight = factor, q.mass *= factor, q.inertia *= factor;
 		}
 		Options o;
 		o.account = true, o.contacts = false;
@@ -311,9 +315,12 @@ TEST(AutomataStep, UnlinkedPairHasNoTensionAndFrictionIsBounded)
 		const Store&    S = s.store;
 		const Contacts& C = s.contacts;
 		for (size_t c = 0; c < C.size(); c++) {
-			const double dx = S.position[0][C.other[c]] - S.position[0][C.owner[c]], dy = S.position[1][C.other[c]] - S.position[1][C.owner[c]], r = std::hypot(dx, dy);
+			const double dx = S.position[0][C.other[c]] - S.position[0][C.owner[c]], dy = S.position[1][C.other[c]] - S.position[1][C.owner[c]],
+				     r      = std::hypot(dx, dy);
 			const double normal = (C.first[c] * dx + C.second[c] * dy) / r, shear = (-C.first[c] * dy + C.second[c] * dx) / r; // force on the owner
-			const double along = (dx * (S.velocity[0][C.other[c]] - S.velocity[0][C.owner[c]]) + dy * (S.velocity[1][C.other[c]] - S.velocity[1][C.owner[c]])) / r;
+			const double along =
+				(dx * (S.velocity[0][C.other[c]] - S.velocity[0][C.owner[c]]) + dy * (S.velocity[1][C.other[c]] - S.velocity[1][C.owner[c]]))
+				/ r;
 			if (r >= std::max(C.rest[c], C.rest[C.reverse[c]])) { EXPECT_EQ(std::fabs(C.first[c]) + std::fabs(C.second[c]), 0.); }
 			EXPECT_LE(normal, 1e-9 * (1 + std::fabs(normal)));
 			if (along >= 0) { EXPECT_LE(std::fabs(shear), C.friction[c] * -normal * (1 + 1e-9) + 1e-6); } // without viscous push
@@ -330,7 +337,7 @@ TEST(AutomataStep, HeldAndDrivenAutomata)
 	for (int k = 0; k < 8; k++) {
 		list[k].free[0] = list[k].free[1] = list[k].freeR = false; // bottom row stands
 		list[56 + k].free[0] = list[56 + k].free[1] = list[56 + k].freeR = false;
-		list[56 + k].velocity[1] = 5; // top row is driven
+		list[56 + k].velocity[1]                                         = 5; // top row is driven
 	}
 	list[30].free[0] = false, list[31].freeR = false;
 	Options o;
