@@ -86,9 +86,9 @@ namespace {
 		Vec<double>                       low, high;
 		for (int c = 0; c < dim; c++) low[c] = grid.low[c] - 1. / grid.inv, high[c] = grid.low[c] + (grid.count[c] + 1) / grid.inv;
 		const auto away = [&](size_t i) {
-			bool any = false;
-			for (int c = 0; c < dim; c++) any |= S.position[c][i] < low[c] || S.position[c][i] > high[c];
-			return any;
+			for (int c = 0; c < dim; c++)
+				if (S.position[c][i] < low[c] || S.position[c][i] > high[c]) return true;
+			return false;
 		};
 #pragma omp parallel for schedule(static, 1) num_threads(threads)
 		for (int t = 0; t < threads; t++)

@@ -218,7 +218,7 @@ TEST(AutomataPair, RigidTurnMakesNoStrain)
 {
 	for (double a : { 1e-6, 0.01, 0.05, 0.2 }) {
 		EXPECT_NEAR(chord(a), 2 * std::tan(0.5 * a), 1.01 * 17. / 20160. * std::pow(a, 7) + 1e-16 * a) << a;
-		const Vec<double> old { 1., 0.3 }, now { std::cos(a) * old.x - std::sin(a) * old.y, std::sin(a) * old.x + std::cos(a) * old.y };
+		const Vec<double> old { 1., 0.3 }, now { std::cos(a) * old[0] - std::sin(a) * old[1], std::sin(a) * old[0] + std::cos(a) * old[1] };
 		const auto        e = strainIncrement(now, now - old, pairSpin(a, a, 0.4, 1.));
 		EXPECT_NEAR(e.normal, 0., 1e-15) << a;
 		EXPECT_NEAR(e.shear, 0., std::pow(a, 7) * 1e-3 + 1e-15) << a;
