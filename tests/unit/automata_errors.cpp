@@ -24,8 +24,11 @@ TEST(AutomataErrors, InputOutOfRange)
 		return said;
 	};
 	const double nan = std::nan("");
-	for (auto field : { &Automaton::x, &Automaton::y, &Automaton::vx, &Automaton::vy, &Automaton::omega, &Automaton::angle, &Automaton::mass,
-	                    &Automaton::inertia, &Automaton::diameter, &Automaton::strength })
+	for (auto field : { &Automaton::position, &Automaton::velocity })
+		for (int c = 0; c < dim; c++)
+			for (double v : { nan, infinite, -infinite })
+				EXPECT_SAYS(bad([&](Automaton& a) { (a.*field)[c] = v; }), "finite");
+	for (auto field : { &Automaton::omega, &Automaton::angle, &Automaton::mass, &Automaton::inertia, &Automaton::diameter, &Automaton::strength })
 		for (double v : { nan, infinite, -infinite })
 			EXPECT_SAYS(bad([&](Automaton& a) { a.*field = v; }), "finite");
 	EXPECT_SAYS(bad([](Automaton& a) { a.mass = 0; }), "mass 0 kg/m must be above zero");
