@@ -317,11 +317,11 @@ TEST(AutomataStep, UnlinkedPairHasNoTensionAndFrictionIsBounded)
 		for (size_t c = 0; c < C.size(); c++) {
 			const double dx = S.position[0][C.other[c]] - S.position[0][C.owner[c]], dy = S.position[1][C.other[c]] - S.position[1][C.owner[c]],
 				     r      = std::hypot(dx, dy);
-			const double normal = (C.first[c] * dx + C.second[c] * dy) / r, shear = (-C.first[c] * dy + C.second[c] * dx) / r; // force on the owner
+			const double fx = C.between[0][c], fy = C.between[1][c], normal = (fx * dx + fy * dy) / r, shear = (-fx * dy + fy * dx) / r; // force on the owner
 			const double along =
 				(dx * (S.velocity[0][C.other[c]] - S.velocity[0][C.owner[c]]) + dy * (S.velocity[1][C.other[c]] - S.velocity[1][C.owner[c]]))
 				/ r;
-			if (r >= std::max(C.rest[c], C.rest[C.reverse[c]])) { EXPECT_EQ(std::fabs(C.first[c]) + std::fabs(C.second[c]), 0.); }
+			if (r >= std::max(C.rest[c], C.rest[C.reverse[c]])) { EXPECT_EQ(std::fabs(fx) + std::fabs(fy), 0.); }
 			EXPECT_LE(normal, 1e-9 * (1 + std::fabs(normal)));
 			if (along >= 0) { EXPECT_LE(std::fabs(shear), C.friction[c] * -normal * (1 + 1e-9) + 1e-6); } // without viscous push
 		}
