@@ -28,6 +28,7 @@
 	F(dTheta, double, always, "", "last increment of the volume strain [-]") \
 	F(P, double, always, "", "pressure of the equation of state [Pa]") \
 	F(mean, double, always, "pressure", "mean pressure: P, in the affine rule with the part of (5f) [Pa]") \
+	F(viscous, double, always, "", "viscous pressure (12a) of the last move [Pa]") \
 	F(h, double, always, "", "pressure share of (6) [N/m]") \
 	F(szz, double, always, "stressZZ", "deviator normal to the plane [Pa]") \
 	F(eqps, double, always, "plasticStrain", "equivalent plastic strain [-]") \

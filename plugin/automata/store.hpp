@@ -17,7 +17,7 @@ namespace mca::automata {
 constexpr int blockSize = 64;
 constexpr int nodeSize = 8, pushSize = tensorSize; ///< numbers of the records that neighbours read
 /// Places in a node record, behind position and velocity.
-constexpr int spinAt = motionSize, dilationAt = motionSize + 1, viscousAt = motionSize + 2, viscousShareAt = motionSize + 3;
+constexpr int spinAt = motionSize, dilationAt = motionSize + 1, viscousShareAt = motionSize + 2;
 /// place of link k of automaton i in the link arrays
 inline size_t linkSlot(size_t i, int k) { return ((i / blockSize) * nLinks + k) * blockSize + i % blockSize; }
 
@@ -47,7 +47,7 @@ struct Store {
 	std::vector<int32_t> neighbour; ///< automaton at the other end, itself where there is none; there the same link is Lattice::opposite(k)
 	std::vector<double>  s, tau;                         ///< J times normal and shear pair stress of this side [Pa]
 	// records that neighbours read; rebuilt in every step, so not part of the saved state
-	std::vector<double> node; ///< 8 per automaton: position, velocity, omega, dTheta, viscous pressure, its share in push
+	std::vector<double> node; ///< 8 per automaton: position, velocity, omega, dTheta, share of the viscosity in push, 0
 	std::vector<double> push; ///< a tensor per automaton, affine rule: link k is pushed by T e_k [N/m]
 	/// Copies motion into the records of a block.
 	void packBlock(size_t b)

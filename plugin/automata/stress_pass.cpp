@@ -166,7 +166,7 @@ namespace {
 		}
 		for (int l = 0; l < blockSize; l++) { // factor = 0: the push is zero
 			double*      record = V.record + nodeSize * l;
-			const double q = record[viscousAt], all = V.mean[l] + q;
+			const double q = V.viscous[l], all = V.mean[l] + q;
 			record[viscousShareAt] = all != 0. ? q / all : 0.;
 			for (int c = 0; c < pushSize; c++) V.push[pushSize * l + c] *= all * V.cell[l];
 		}

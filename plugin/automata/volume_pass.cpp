@@ -74,7 +74,6 @@ namespace {
 		TensorLanes<blockSize>    dyads;        ///< of r (x) e_k [m]
 		SymmetricLanes<blockSize> directions;   ///< of e_k (x) e_k; not filled where all links hold
 		alignas(64) double nearest2[blockSize]; ///< smallest r^2 [m2]
-		alignas(64) double viscous[blockSize];  ///< viscous pressure [Pa]; of the state, not of a sum
 	};
 	template <bool intact> MCA_INLINE void sumLinks(const BlockView& V, LinkSums& to)
 	{
@@ -121,7 +120,8 @@ namespace {
 			const double            slope = volumeSlope(c, F, e, V.factor[l]);
 			stiffest                      = max(stiffest, affineStiffness(c, J, slope, L.nearest2[l]));
 			V.dTheta[l] = dilation(J, Jo), V.J[l] = J, V.P[l] = p.P;
-			L.viscous[l] = viscosity.pressure(V.dTheta[l], slope);
+			const double q = V.factor[l] > 0. ? viscosity.pressure(V.dTheta[l], slope) : 0.;
+			V.viscous[l]   = perMove > 0. ? q : V.viscous[l]; // forces once more without a move: as before
 			if (hot) V.heat[l] = p.e;
 			L.dyads.set(l, t);
 			closing = max(closing, -V.dTheta[l]);
@@ -131,7 +131,6 @@ namespace {
 			badCount += validVolume(J) ? 0 : 1;
 		}
 		for (int g = 0; g < blockSize; g += lanes) scatter(V.push + pushSize * g, pushSize, L.dyads.lanes(g));
-		for (int l = 0; l < blockSize; l++) V.record[nodeSize * l + viscousAt] = L.viscous[l];
 		if (contactSum) { // contacts have a volume of their own
 #pragma omp simd reduction(max : stiffest) reduction(+ : clampCount)
 			for (int l = 0; l < blockSize; l++) {

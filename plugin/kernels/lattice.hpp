@@ -25,10 +25,10 @@ struct Hexagonal {
 using Lattice = Hexagonal;
 constexpr int nLinks = Lattice::neighbours;
 
-/// Stands for direction (x) direction of link k in a sum over links; w: 1 where the link holds, else 0.
+/// Stands for direction (x) direction of link k in a sum over links; w: 1 where the link holds, else 0. All of them make spread exactly.
 template <class T> MCA_INLINE void addDirection(Symmetric<T>& sum, int k, T w)
 {
-	sum.xx += w * (Lattice::x[k] * Lattice::x[k]), sum.xy += w * (Lattice::x[k] * Lattice::y[k]), sum.yy += w * (Lattice::y[k] * Lattice::y[k]);
+	sum.xx += w * (Lattice::x[k] * Lattice::x[k]), sum.xy += w * (Lattice::x[k] * Lattice::y[k]), sum.yy += w * (1. - Lattice::x[k] * Lattice::x[k]);
 }
 /// v (x) direction of link k in a sum over links.
 template <class T> MCA_INLINE void addDyad(Tensor<T>& sum, int k, Vec<T> v)

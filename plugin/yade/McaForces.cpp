@@ -111,7 +111,7 @@ void McaLaw::addForces(Scene* scene)
 		const Row& r = rows[size_t(place[size_t(i)])];
 		r.l->moved   = scene->dt;
 		if (r.material->eos.heats()) { // the heat of the viscosity of links goes into the internal energy
-			const Real heat = mca::viscousWork(r.viscous, r.l->dTheta, r.m->volumeRatio) * r.l->cell + s.linkHeat;
+			const Real heat = mca::viscousWork(r.l->viscous, r.l->dTheta, r.m->volumeRatio) * r.l->cell + s.linkHeat;
 			r.m->dissipated += heat * (1. / r.material->eos.rho0) / r.l->cell;
 			if (scene->trackEnergy) heated += heat;
 		}

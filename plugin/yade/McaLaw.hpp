@@ -99,7 +99,6 @@ public:
 		Side                 link[mca::nLinks];
 		int                  firstContact = 0, lastContact = 0; ///< in contacts, ascending ids
 		Real                 lost      = 0;                     ///< normal stress of links that have broken in this step, with their weights [Pa]
-		Real                 viscous   = 0;                     ///< viscous pressure (12a) [Pa]
 		Real                 curvature = 0;                     ///< second difference of the volume
 		Vector3r             motion = Vector3r::Zero(); ///< velocity [m/s] and spin [rad/s] of the last move
 		bool                 fresh  = false;            ///< has made no move

@@ -63,7 +63,7 @@ template <mca::EosKind law> void McaLaw::volumeBy(Row& r, bool withContacts)
 			l.txx = push.xx, l.txy = push.xy, l.tyx = push.yx, l.tyy = push.yy;
 			const Real slope = mca::volumeSlope(c, F, directions, l.factor);
 			r.stiff          = mca::affineStiffness(c, J, slope, nearest2);
-			r.viscous        = mca::BulkViscosity(*r.material, r.d, lastMove > 0 ? 1. / lastMove : 0.).pressure(mca::dilation(J, Jo), slope);
+			if (lastMove > 0) l.viscous = l.factor > 0 ? mca::BulkViscosity(*r.material, r.d, 1. / lastMove).pressure(mca::dilation(J, Jo), slope) : 0.;
 			if (!withContacts) return;
 			const Real Jc = mca::contactRatio(contactSum); // contacts have a volume of their own
 			l.pressureShare       = mca::pressureShare<mca::ofContacts(rule.value)>(mca::pressure<law>(c.eos, Jc - 1.), Jc, l.cell * (1. / nLinks));
@@ -173,8 +173,8 @@ void McaLaw::finishPressure(Row& r) const
 		if (const Side& s = r.link[k]; s.p) normals += mca::linkWeight(l.flags, k) * s.p->s[s.side];
 	const bool affine = l.rule == int(VolumeRule::affine) && l.factor > 0;
 	r.m->pressure     = affine ? mca::meanPressure(l.P, normals, r.m->volumeRatio, r.m->stressZZ, l.invN, mca::Lattice::cell(r.d), l.cell) : l.P;
-	const Real sum = r.m->pressure + r.viscous, all = sum * l.cell;
-	l.viscousShare = sum != 0 ? r.viscous / sum : 0.;
+	const Real sum = r.m->pressure + l.viscous, all = sum * l.cell;
+	l.viscousShare = sum != 0 ? l.viscous / sum : 0.;
 	l.txx *= all, l.txy *= all, l.tyx *= all, l.tyy *= all;
 }
 

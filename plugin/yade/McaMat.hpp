@@ -20,6 +20,7 @@ public:
 		((Real, factor, 0, Attr::readonly, "affine rule: J = factor det F; 0: too few links to have a volume [-]"))
 		((Real, P, 0, Attr::readonly, "pressure of the equation of state [Pa]"))
 		((Real, dTheta, 0, Attr::readonly, "last increment of the volume strain [-]"))
+		((Real, viscous, 0, Attr::readonly, "viscous pressure of the last move [Pa]"))
 		((Real, viscousShare, 0, Attr::readonly, "share of the viscous pressure in T of txx [-]"))
 		((Real, txx, 0, Attr::readonly, "affine rule: link k is pushed by T e_k [N/m]"))
 		((Real, txy, 0, Attr::readonly, "see txx [N/m]"))

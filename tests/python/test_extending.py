@@ -53,7 +53,7 @@ TEST(Voce, OfAutomata)
 	const Material m    = voce();
 	auto           list = packing(1e-3, 41, 47, m, { -20e-3, -20e-3, 0 });
 	for (auto& a : list)
-		a.vx = shear * a.x, a.vy = -shear * a.y;
+		a.velocity = { shear * a.position[0], -shear * a.position[1] };
 	Solver s;
 	s.build(list, { m }, {});
 	for (int k = 0; k < steps / 2; k++)

@@ -145,7 +145,7 @@ MCA_INLINE double meanPressure(double P, double normals, double J, double szz, d
 /// sum of e_k (x) e_k.
 template <EosKind law> MCA_INLINE double volumeSlope(const VolumeConstants<law>& c, const Tensor<double>& F, const Symmetric<double>& e, double factor)
 {
-	const double spread = e.xx * (F.yy * F.yy + F.yx * F.yx) - 2. * e.xy * (F.yy * F.xy + F.yx * F.xx) + e.yy * (F.xy * F.xy + F.xx * F.xx);
+	const double spread = e.xx * (F.yy * F.yy + F.xy * F.xy) - 2. * e.xy * (F.yy * F.yx + F.xy * F.xx) + e.yy * (F.yx * F.yx + F.xx * F.xx);
 	return max(factor * factor * spread * c.perArea * (1. / nLinks), 1.);
 }
 /// stiffness(), and how much stiffer than in the perfect packing: the volume by its slope, the pair law by the closest link, nearest2 = smallest r^2 [m2].
