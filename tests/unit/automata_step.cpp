@@ -315,13 +315,11 @@ TEST(AutomataStep, UnlinkedPairHasNoTensionAndFrictionIsBounded)
 		const Store&    S = s.store;
 		const Contacts& C = s.contacts;
 		for (size_t c = 0; c < C.size(); c++) {
-			const double dx = S.position[0][C.other[c]] - S.position[0][C.owner[c]], dy = S.position[1][C.other[c]] - S.position[1][C.owner[c]],
-				     r      = std::hypot(dx, dy);
-			const double normal = (C.first[c] * dx + C.second[c] * dy) / r, shear = (-C.first[c] * dy + C.second[c] * dx) / r; // force on the owner
-			const double along =
-				(dx * (S.velocity[0][C.other[c]] - S.velocity[0][C.owner[c]]) + dy * (S.velocity[1][C.other[c]] - S.velocity[1][C.owner[c]]))
-				/ r;
-			if (r >= std::max(C.rest[c], C.rest[C.reverse[c]])) { EXPECT_EQ(std::fabs(C.first[c]) + std::fabs(C.second[c]), 0.); }
+			const size_t      i = size_t(C.owner[c]), j = size_t(C.other[c]);
+			const Vec<double> x = S.between(i, j), f = C.between.at(c); // f: force on the owner
+			const double      r = std::sqrt(S.distance2(i, j)), normal = plainDot(f, x) / r, shear = plainCross(x, f) / r;
+			const double      along = plainDot(x, S.velocity.at(j) - S.velocity.at(i)) / r;
+			if (r >= std::max(C.rest[c], C.rest[C.reverse[c]])) { EXPECT_EQ(sumOfMagnitudes(f), 0.); }
 			EXPECT_LE(normal, 1e-9 * (1 + std::fabs(normal)));
 			if (along >= 0) { EXPECT_LE(std::fabs(shear), C.friction[c] * -normal * (1 + 1e-9) + 1e-6); } // without viscous push
 		}
