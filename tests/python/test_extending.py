@@ -61,7 +61,7 @@ TEST(Voce, OfAutomata)
 	s.computeForces();
 	size_t middle = 0;
 	for (size_t i = 0; i < s.store.size(); i++)
-		if (s.store.id[i] >= 0 && std::hypot(s.store.x[i], s.store.y[i]) < std::hypot(s.store.x[middle], s.store.y[middle])) middle = i;
+		if (s.store.id[i] >= 0 && plainSquare(s.store.position.at(i)) < plainSquare(s.store.position.at(middle))) middle = i;
 	EXPECT_GT(s.store.eqps[middle], 0.015);
 	EXPECT_NEAR(s.equivalentStress(middle) / curve(s.store.eqps[middle]), 1., 1e-4);
 }
