@@ -12,7 +12,7 @@ void viscousHeat(Store& S, size_t b, VolumeRule rule, double dt, BlockWork* work
 	double          sum = 0;
 	for (int l = 0; l < B.count; l++) {
 		const size_t i = b * blockSize + l;
-		double       q = viscousWork(S.viscous[i], S.dTheta[i], S.J[i]) * S.cell[i];
+		double       q = 0;
 		for (int k = 0; k < nLinks; k++) {
 			if (!holds(S.flags[i], k)) continue;
 			const int32_t       j = S.neighbour[linkSlot(i, k)];
@@ -23,6 +23,7 @@ void viscousHeat(Store& S, size_t b, VolumeRule rule, double dt, BlockWork* work
 				* viscousCoefficient(along, 1. / dot(r, r), c.linear, c.quadratic, Lattice::width(S.restDistance(i, j))) * along
 				* dt; // this side's half
 		}
+		q += viscousWork(S.viscous[i], S.dTheta[i], S.J[i]) * S.cell[i];
 		S.heat[i] += q * perMass / S.cell[i];
 		sum += q;
 	}

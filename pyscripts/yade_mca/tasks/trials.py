@@ -155,7 +155,7 @@ def until(s, time):
 	if o.iter == 0:
 		steps(s, 1)
 	while clock() < time:
-		steps(s, max(1, int((time - clock()) / o.dt / 1.02)))
+		steps(s, max(1, int((time - clock()) / o.dt / 2)))  # the step may grow on the way
 
 
 def exactly(s, time, courant):
