@@ -103,8 +103,8 @@ namespace {
 		const size_t links = n * nLinks;
 		need(S.neighbour.size() == links && S.s.size() == links && S.tau.size() == links, "the length of the links");
 		if (stopped) return;
-		need(allOf(finite, S.dTheta, S.P, S.mean, S.viscous, S.h, S.szz, S.temperature, S.criterion, S.heat, S.force, S.torque, S.outside, S.outsideTorque, S.s,
-		           S.tau),
+		need(allOf(finite, S.dTheta, S.P, S.mean, S.viscous, S.h, S.szz, S.temperature, S.criterion, S.heat, S.force, S.torque, S.outside,
+		           S.outsideTorque, S.s, S.tau),
 		     "a stress or force");
 		need(positive(S.J) && notNegative(S.eqps), "a volume or strain");
 	}

@@ -102,7 +102,8 @@ void Solver::inheritState(const Solver& old)
 	for (size_t i = 0; i < S.size(); i++) {
 		const int64_t o = S.id[i] < 0 ? -1 : indexIn(old, S.id[i]);
 		if (o < 0) continue;
-		S.J[i] = O.J[o], S.P[i] = O.P[o], S.mean[i] = O.mean[o], S.viscous[i] = O.viscous[o], S.h[i] = O.h[o], S.szz[i] = O.szz[o], S.eqps[i] = O.eqps[o], S.dTheta[i] = O.dTheta[o];
+		S.J[i] = O.J[o], S.P[i] = O.P[o], S.mean[i] = O.mean[o], S.viscous[i] = O.viscous[o], S.h[i] = O.h[o], S.szz[i] = O.szz[o],
+		S.eqps[i] = O.eqps[o], S.dTheta[i] = O.dTheta[o];
 		S.temperature[i] = O.temperature[o], S.strength[i] = O.strength[o], S.criterion[i] = O.criterion[o], S.angle[i] = O.angle[o];
 		if (!S.heat.empty() && !O.heat.empty()) S.heat[i] = O.heat[o];
 		bool same = true;

@@ -19,10 +19,10 @@ struct BlockView {
 	const Planes<double> force          = store.force.planes(base);
 	const double *       omega = at(store.omega), *cell = at(store.cell), *invN = at(store.invN), *strength = at(store.strength),
 		     *diameterOfAll = store.diameter.data(), *node = store.node.data(), *pushOfAll = store.push.data();
-	double *J = at(store.J), *dTheta = at(store.dTheta), *P = at(store.P), *mean = at(store.mean), *viscous = at(store.viscous), *h = at(store.h), *factor = at(store.factor),
-	       *rest = at(store.rest), *szz = at(store.szz), *eqps = at(store.eqps), *temperature = at(store.temperature), *heat = at(store.heat),
-	       *criterion = at(store.criterion), *s = at(store.s, nLinks), *tau = at(store.tau, nLinks), *record = at(store.node, nodeSize),
-	       *push = at(store.push, pushSize), *torque = at(store.torque);
+	double *J = at(store.J), *dTheta = at(store.dTheta), *P = at(store.P), *mean = at(store.mean), *viscous = at(store.viscous), *h = at(store.h),
+	       *factor = at(store.factor), *rest = at(store.rest), *szz = at(store.szz), *eqps = at(store.eqps), *temperature = at(store.temperature),
+	       *heat = at(store.heat), *criterion = at(store.criterion), *s = at(store.s, nLinks), *tau = at(store.tau, nLinks),
+	       *record = at(store.node, nodeSize), *push = at(store.push, pushSize), *torque = at(store.torque);
 	const int32_t *flags = at(store.flags), *neighbour = at(store.neighbour, nLinks);
 	BlockView(Store& S, size_t b)
 		: store(S)

@@ -130,8 +130,7 @@ McaEngine::Change McaEngine::changeOf(size_t q, bool& rebuild)
 	c.strength      = differs(s.strength, was.strength);
 	c.mask          = b.groupMask != was.mask;
 	bool sameFree   = free(State::DOF_RZ, S.perInertia[i]);
-	for (int k = 0; k < mca::dim; k++)
-		sameFree &= free(translation(k), S.perMass[k][i]);
+	for (int k = 0; k < mca::dim; k++) sameFree &= free(translation(k), S.perMass[k][i]);
 	c.blocked = !tied && !sameFree;
 	if (c.position || c.velocity || c.spin || c.angle) checkMotion(b);
 	if (tied && (c.position || c.velocity))
