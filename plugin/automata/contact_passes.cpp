@@ -42,13 +42,13 @@ namespace {
 	// One half-contact each, in functions of their own, with the view private to the thread: a vector or pair declared in the body of a parallel loop, or a
 	// view that is shared, keeps it from being vectorised.
 
-        template <VolumeRule rule> MCA_INLINE void volumeTermOf(const View& V, const Planes<const double>& x, long c)
-        {
+	template <VolumeRule rule> MCA_INLINE void volumeTermOf(const View& V, const Planes<const double>& x, long c)
+	{
 		const int32_t     i = V.owner[c], j = V.other[c];
-				  const Vec<double> r    = x.at(j) - x.at(i);
-				  const double      rest = V.rest[c], d = V.d[c], r2 = dot(r, r), on = pushes(r2, rest, d);
-				  V.between.set(c, r), V.r2[c] = r2;
-				  V.pushing[c] = on;
+		const Vec<double> r    = x.at(j) - x.at(i);
+		const double      rest = V.rest[c], d = V.d[c], r2 = dot(r, r), on = pushes(r2, rest, d);
+		V.between.set(c, r), V.r2[c] = r2;
+		V.pushing[c] = on;
 		V.first[c]       = on > 0. ? volumeTerm<rule>(rest, r2) : 0.;
 		V.rest[c]    = restAfter(rest, r2, d);
 		V.second[c]       = on > 0. ? r2 / (rest * rest) : 1.;
@@ -57,33 +57,28 @@ namespace {
 	{
 		const long    n = long(C.size());
 		const View    V(C);
-				  const auto    x = S.position.planes();
+		const auto    x = S.position.planes();
 #pragma omp parallel for simd schedule(static) firstprivate(V, x) if (n >= parallelFrom)
-                for (long c = 0; c < n; c++) volumeTermOf<rule>(V, x, c);
-        }
+		for (long c = 0; c < n; c++)
+			volumeTermOf<rule>(V, x, c);
+	}
 
 	/// What the trial stresses read of the automata.
 	struct Movers {
-                const Planes<const double> velocity;
-                const double *             omega, *dTheta, *J;
-                explicit Movers(const Store& S)
-                        : velocity(S.velocity.planes())
-                        , omega(S.omega.data())
-                        , dTheta(S.dTheta.data())
-                        , J(S.J.data())
-                {
-                }
-        };
+		const Planes<const double> velocity;
+		const double *             omega, *dTheta, *J;
+		explicit Movers(const Store& S) : velocity(S.velocity.planes()), omega(S.omega.data()), dTheta(S.dTheta.data()), J(S.J.data()) { }
+	};
 	/// Returns the relative speed squared [m2/s2].
 	template <bool account> MCA_INLINE double trialOf(const View& V, const Movers& M, double dt, long c)
 	{
 		const int32_t     i = V.owner[c], j = V.other[c];
-				  const Vec<double>                    r = V.between.at(c), v = M.velocity.at(j) - M.velocity.at(i);
-				  const double      touch = max(V.pushing[c], V.pushing[V.reverse[c]]), perOldJ = perOldRatio(M.dTheta[i], M.J[i]);
+		const Vec<double> r = V.between.at(c), v = M.velocity.at(j) - M.velocity.at(i);
+		const double      touch = max(V.pushing[c], V.pushing[V.reverse[c]]), perOldJ = perOldRatio(M.dTheta[i], M.J[i]);
 		const Pair<double> old { V.s[c] * perOldJ, V.tau[c] * perOldJ };
 		const auto         strain = strainIncrement(r, v * dt, pairSpin(M.omega[i], M.omega[j], V.arm[c], dt));
-				  const Pair<double> all    = trialStress(old, strain, pairDilation(M.dTheta[i], M.dTheta[j], ofBoth), V.twoG[c]);
-				  const Pair<double> now { touch > 0. ? all.normal : 0., touch > 0. ? all.shear : 0. };
+		const Pair<double> all = trialStress(old, strain, pairDilation(M.dTheta[i], M.dTheta[j], ofBoth), V.twoG[c]);
+		const Pair<double> now { touch > 0. ? all.normal : 0., touch > 0. ? all.shear : 0. };
 		V.touch[c] = touch, V.along[c] = dot(r, v);
 		V.second[c] = old.normal, V.third[c] = old.shear; // for the account
 		V.s[c] = now.normal, V.tau[c] = now.shear;
@@ -139,25 +134,26 @@ namespace {
 		}
 	}
 
-        /// Planes of n numbers one behind the other.
-        MCA_INLINE Planes<double> planesFrom(double* first, long n)
-        {
-				  Planes<double> p;
-				  for (int c = 0; c < dim; c++) p.plane[c] = first + c * n;
-                return p;
-        }
-        /// t: torque, and for the account the shares of pressure and viscosity, n numbers each.
+	/// Planes of n numbers one behind the other.
+	MCA_INLINE Planes<double> planesFrom(double* first, long n)
+	{
+		Planes<double> p;
+		for (int c = 0; c < dim; c++)
+			p.plane[c] = first + c * n;
+		return p;
+	}
+	/// t: torque, and for the account the shares of pressure and viscosity, n numbers each.
 	template <bool account> MCA_INLINE void forceOf(const View& V, double* t, long n, long c)
 	{
 		const int32_t      r   = V.reverse[c];
-				  const Vec<double>  x   = V.between.at(c);
-				  const double       d = V.d[c], inv = 1. / V.r2[c], on = V.touch[c], area = pairArea(1., d);
+		const Vec<double>  x   = V.between.at(c);
+		const double       d = V.d[c], inv = 1. / V.r2[c], on = V.touch[c], area = pairArea(1., d);
 		const Pair<double> both { on * (area * (V.s[c] + V.s[r])), on * (area * (V.tau[c] + V.tau[r])) };
 		const double       q  = on * viscousCoefficient(V.along[c], inv, V.viscLinear[c], V.viscQuadratic[c], Lattice::width(d)), pr = on * V.press[c];
-				  V.between.set(c, contactForce(x, both, inv, q, pr));
-				  t[c]   = V.arm[c] * both.shear;
-				  if (account) planesFrom(t + n, n).set(c, x * -pr), planesFrom(t + (1 + dim) * n, n).set(c, x * q);
-        }
+		V.between.set(c, contactForce(x, both, inv, q, pr));
+		t[c]   = V.arm[c] * both.shear;
+		if (account) planesFrom(t + n, n).set(c, x * -pr), planesFrom(t + (1 + dim) * n, n).set(c, x * q);
+	}
 	template <bool account> void forces(Contacts& C, double* t)
 	{
 		const long n = long(C.size());
@@ -220,7 +216,8 @@ void contactForces(Contacts& C, ContactScratch& out, bool account)
 	account ? forces<true>(C, t) : forces<false>(C, t);
 	std::array<const double*, 1 + dim> from { t };
 	std::array<double*, 1 + dim>       to { out.torque.data() };
-	for (int c = 0; c < dim; c++) from[1 + c] = C.between[c].data(), to[1 + c] = out.force[c].data();
+	for (int c = 0; c < dim; c++)
+		from[1 + c] = C.between[c].data(), to[1 + c] = out.force[c].data();
 	addRows<1 + dim>(C, from, to);
 	if (!account) return;
 	std::array<const double*, 2 * dim> shares;

@@ -17,19 +17,23 @@ namespace {
 		{
 			for (int c = 0; c < dim; c++) {
 				low[c] = 1e300, high[c] = -1e300;
-				for (int32_t i : who) low[c] = std::min(low[c], S.position[c][i]), high[c] = std::max(high[c], S.position[c][i]);
+				for (int32_t i : who)
+					low[c] = std::min(low[c], S.position[c][i]), high[c] = std::max(high[c], S.position[c][i]);
 			}
 			// debris far away must not make the grid larger than the list that it serves
 			const double most  = 8. * double(who.size()) + 1024.;
 			const auto   cells = [&] {
                                 double n = 1;
-                                for (int c = 0; c < dim; c++) n *= (high[c] - low[c]) / size + 1;
+                                for (int c = 0; c < dim; c++)
+                                        n *= (high[c] - low[c]) / size + 1;
                                 return n;
 			};
-			while (cells() > most) size *= 1.25;
+			while (cells() > most)
+				size *= 1.25;
 			inv        = 1. / size;
 			size_t all = 1;
-			for (int c = 0; c < dim; c++) count[c] = int((high[c] - low[c]) * inv) + 1, all *= size_t(count[c]);
+			for (int c = 0; c < dim; c++)
+				count[c] = int((high[c] - low[c]) * inv) + 1, all *= size_t(count[c]);
 			begin.assign(all + 1, 0);
 			for (int32_t i : who)
 				begin[cellOf(S, i) + 1]++;
@@ -84,7 +88,8 @@ namespace {
 		std::vector<std::vector<int32_t>> parts(threads);
 		const long                        nb = long(S.blocks.size());
 		Vec<double>                       low, high;
-		for (int c = 0; c < dim; c++) low[c] = grid.low[c] - 1. / grid.inv, high[c] = grid.low[c] + (grid.count[c] + 1) / grid.inv;
+		for (int c = 0; c < dim; c++)
+			low[c] = grid.low[c] - 1. / grid.inv, high[c] = grid.low[c] + (grid.count[c] + 1) / grid.inv;
 		const auto away = [&](size_t i) {
 			for (int c = 0; c < dim; c++)
 				if (S.position[c][i] < low[c] || S.position[c][i] > high[c]) return true;

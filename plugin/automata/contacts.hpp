@@ -25,7 +25,8 @@ struct ContactScratch {
 	{
 #define MCA_NUMBER(name, presence, text) f(name, Presence::presence);
 #define MCA_VECTOR(name, presence, text, ...) \
-	for (auto& plane : name) f(plane, Presence::presence);
+	for (auto& plane : name) \
+		f(plane, Presence::presence);
 		MCA_CONTACT_SUMS(MCA_NUMBER, MCA_VECTOR)
 #undef MCA_VECTOR
 #undef MCA_NUMBER

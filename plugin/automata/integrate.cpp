@@ -13,7 +13,8 @@ namespace {
 		Planes<const double> planes() const
 		{
 			Planes<const double> p;
-			for (int c = 0; c < dim; c++) p.plane[c] = velocity[c];
+			for (int c = 0; c < dim; c++)
+				p.plane[c] = velocity[c];
 			return p;
 		}
 	};
@@ -60,7 +61,8 @@ namespace {
 	bool driftBlock(Store& S, size_t base, double dt, const Kicked& to)
 	{
 		double most = driftLanes(to.omega, dt, &S.omega[base], &S.angle[base]);
-		for (int c = 0; c < dim; c++) most = max(most, driftLanes(to.velocity[c], dt, &S.velocity[c][base], &S.position[c][base]));
+		for (int c = 0; c < dim; c++)
+			most = max(most, driftLanes(to.velocity[c], dt, &S.velocity[c][base], &S.position[c][base]));
 		return most > 0;
 	}
 }
@@ -76,8 +78,10 @@ void Solver::checkForces()
 	eachAwake([&](size_t b) {
 		int          bad  = 0;
 		const size_t base = b * blockSize;
-		for (int l = 0; l < blockSize; l++) bad += finite(force.at(base + l), S.torque[base + l]) ? 0 : 1;
-		for (int l = 0; ext && l < blockSize; l++) bad += finite(given.at(base + l), S.outsideTorque[base + l]) ? 0 : 1;
+		for (int l = 0; l < blockSize; l++)
+			bad += finite(force.at(base + l), S.torque[base + l]) ? 0 : 1;
+		for (int l = 0; ext && l < blockSize; l++)
+			bad += finite(given.at(base + l), S.outsideTorque[base + l]) ? 0 : 1;
 		if (bad) results[b].bad = int64_t(base);
 	});
 	for (int32_t b : awake)
@@ -132,7 +136,8 @@ void Solver::bookBlock(size_t b, double kick, double after, const Planes<const d
 		const Vec<double> centre = v - (v - before) * after;
 		const double      cw     = w - after * (w - S.omega[i]);
 		double            gained = plainSquare(centre);
-		for (int c = 0; c < dim; c++) gained -= v[c] * v[c];
+		for (int c = 0; c < dim; c++)
+			gained -= v[c] * v[c];
 		if (!(S.flags[i] & tiedBit)) p.centre += 0.5 * S.mass[i] * gained;
 		if (!(S.flags[i] & tiedBit) || S.perInertia[i] > 0) p.centre += 0.5 * S.inertia[i] * (cw * cw - w * w);
 	}

@@ -61,7 +61,8 @@ void Solver::searchIfNeeded()
 		diagonal2 += sqr(high - low);
 	}
 	if (n > 0 && diagonal2 > sqr(reach))
-		for (long q = 0; q < n; q++) most = max(most, plainSquare(S.position.at(who[q]) - searched.at(q)));
+		for (long q = 0; q < n; q++)
+			most = max(most, plainSquare(S.position.at(who[q]) - searched.at(q)));
 	due |= 4. * most > sqr(reach);
 	// links break in batches, every fourth step: each batch needs a search, and a few steps do not matter to a process that takes hundreds
 	if (!due && counters.steps % breakPeriod == 0) due = breaking();
@@ -87,7 +88,8 @@ void Solver::search()
 	for (size_t i = 0; i < S.size(); i++)
 		if (S.id[i] >= 0 && (S.flags[i] & exposedBit)) exposed.push_back(int32_t(i));
 	searched.resize(exposed.size());
-	for (size_t q = 0; q < exposed.size(); q++) searched.set(q, S.position.at(exposed[q]));
+	for (size_t q = 0; q < exposed.size(); q++)
+		searched.set(q, S.position.at(exposed[q]));
 	contactAdjacent.clear();
 	if (options.sleeping && awake.size() < S.blocks.size()) {
 		for (size_t c = 0; c < contacts.size(); c++) {

@@ -24,7 +24,8 @@ struct SpaceKey {
 		, id(id_)
 		, place(place_)
 	{
-		for (int c = 1; c < dim; c++) strip[c - 1] = int64_t(std::floor(at[c] / (stripHeight * d))), across[c - 1] = at[c];
+		for (int c = 1; c < dim; c++)
+			strip[c - 1] = int64_t(std::floor(at[c] / (stripHeight * d))), across[c - 1] = at[c];
 	}
 	bool operator<(const SpaceKey& o) const
 	{

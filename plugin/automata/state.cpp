@@ -115,7 +115,8 @@ namespace {
 		}
 		void operator()(Vectors& v)
 		{
-			for (auto& plane : v) (*this)(plane);
+			for (auto& plane : v)
+				(*this)(plane);
 		}
 		template <class T> void operator()(std::vector<T>& v, Presence p)
 		{
@@ -128,12 +129,15 @@ namespace {
 template <class F> void Solver::archive(F&& to)
 {
 	Fields<std::remove_reference_t<F>> f { to };
-	for (auto name : automatonFieldNames) to.names(name), to.names(" ");
-	for (auto name : contactFieldNames) to.names(name), to.names(" ");
+	for (auto name : automatonFieldNames)
+		to.names(name), to.names(" ");
+	for (auto name : contactFieldNames)
+		to.names(name), to.names(" ");
 	store.eachArray(f);
 	contacts.eachArray(f);
 	f.MCA_EACH(store.neighbour, store.s, store.tau, store.blocks, store.species, store.materials, contacts.rowOwner, contacts.rowBegin);
-	for (auto& name : contactSumNames) to.names(&name == contactSumNames ? "scratch." : ", scratch."), to.names(name);
+	for (auto& name : contactSumNames)
+		to.names(&name == contactSumNames ? "scratch." : ", scratch."), to.names(name);
 	scratch.eachArray(f);
 	f.each(solverVectorNames, accountForce.volumetric, accountForce.viscous, searched, tiedVelocity, tiedSpin);
 	f.MCA_EACH(

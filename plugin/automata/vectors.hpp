@@ -18,38 +18,45 @@ struct Vectors {
 	bool                       empty() const { return plane[0].empty(); }
 	void                       resize(size_t n)
 	{
-		for (auto& v : plane) v.resize(n, 0.);
+		for (auto& v : plane)
+			v.resize(n, 0.);
 	}
 	void push_back(Vec<double> v)
 	{
-		for (int c = 0; c < dim; c++) plane[c].push_back(v[c]);
+		for (int c = 0; c < dim; c++)
+			plane[c].push_back(v[c]);
 	}
 	/// As bare pointers from entry `from` on; null where there are no entries.
 	Planes<double> planes(size_t from = 0)
 	{
 		Planes<double> p;
-		for (int c = 0; c < dim; c++) p.plane[c] = empty() ? nullptr : plane[c].data() + from;
+		for (int c = 0; c < dim; c++)
+			p.plane[c] = empty() ? nullptr : plane[c].data() + from;
 		return p;
 	}
 	Planes<const double> planes(size_t from = 0) const
 	{
 		Planes<const double> p;
-		for (int c = 0; c < dim; c++) p.plane[c] = empty() ? nullptr : plane[c].data() + from;
+		for (int c = 0; c < dim; c++)
+			p.plane[c] = empty() ? nullptr : plane[c].data() + from;
 		return p;
 	}
 	Vec<double> at(size_t i) const
 	{
 		Vec<double> v;
-		for (int c = 0; c < dim; c++) v[c] = plane[c][i];
+		for (int c = 0; c < dim; c++)
+			v[c] = plane[c][i];
 		return v;
 	}
 	void set(size_t i, Vec<double> v)
 	{
-		for (int c = 0; c < dim; c++) plane[c][i] = v[c];
+		for (int c = 0; c < dim; c++)
+			plane[c][i] = v[c];
 	}
 	void add(size_t i, Vec<double> v)
 	{
-		for (int c = 0; c < dim; c++) plane[c][i] += v[c];
+		for (int c = 0; c < dim; c++)
+			plane[c][i] += v[c];
 	}
 };
 
@@ -57,7 +64,8 @@ struct Vectors {
 template <class F, class T> void eachPlane(F&& f, std::vector<T>& v) { f(v); }
 template <class F> void          eachPlane(F&& f, Vectors& v)
 {
-	for (auto& plane : v) f(plane);
+	for (auto& plane : v)
+		f(plane);
 }
 template <class F, class... V> void eachPlane(F&& f, V&... v) { (eachPlane(f, v), ...); }
 } // namespace mca::automata

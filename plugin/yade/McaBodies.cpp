@@ -115,7 +115,8 @@ void McaBodies::add(const Body& b, int seed)
 	a.eqps     = ms->plasticStrain;
 	a.id       = b.id;
 	a.group    = b.groupMask;
-	for (int c = 0; c < mca::dim; c++) a.free[c] = !(s.blockedDOFs & translation(c));
+	for (int c = 0; c < mca::dim; c++)
+		a.free[c] = !(s.blockedDOFs & translation(c));
 	a.freeR = !(s.blockedDOFs & State::DOF_RZ);
 	automata.push_back(a);
 	ids.push_back(b.id);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "McaEngine.hpp"
-#include "McaLook.hpp"
-#include "McaVec.hpp"
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
+#include "McaLook.hpp"
+#include "McaVec.hpp"
 
 namespace yade {
 YADE_PLUGIN((McaEngine));

@@ -180,10 +180,8 @@ void McaGridCoupler::motionToRow(Scene* scene, bool positions)
 		}
 		auto&        A = foundAutomata->automata();
 		const size_t i = size_t(A.indexOf(row[k].id));
-		if (positions)
-			A.store.position.set(i, m.position); // no drift by round-off
-		else
-			A.setTiedVelocity(size_t(places[k]), m.velocity, A.store.omega[i]);
+		if (positions) A.store.position.set(i, m.position); // no drift by round-off
+		else A.setTiedVelocity(size_t(places[k]), m.velocity, A.store.omega[i]);
 	}
 }
 
@@ -273,8 +271,8 @@ vector<Vector2r> McaGridCoupler::rowShares() const
 py::dict McaGridCoupler::energies()
 {
 	Scene* now = Omega::instance().getScene().get();
-	Real                       kinetic = 0, total = 0, booked = 0, turn = 0;
-	mca::Vec<Real>             momentum {}, impulse {};
+	Real   kinetic = 0, total = 0, booked = 0, turn = 0;
+	mca::Vec<Real> momentum {}, impulse {};
 	std::set<McaSolverEngine*> done;
 	for (auto* c : all(now)) {
 		c->prepare(now);
@@ -282,7 +280,8 @@ py::dict McaGridCoupler::energies()
 		if (c->foundAutomata && done.insert(c->foundAutomata.get()).second) {
 			c->foundAutomata->refresh(now); // what a script has changed counts already
 			const auto a = c->foundAutomata->automata().account();
-			kinetic += a.kinetic, total += a.total(), booked += a.bookedError(), momentum += a.momentum, impulse += a.impulse, turn += a.angular;
+			kinetic += a.kinetic, total += a.total(), booked += a.bookedError(), momentum += a.momentum, impulse += a.impulse,
+				turn += a.angular;
 		}
 		if (!done.insert(c->foundGrid.get()).second) return;
 		const auto& g = c->foundGrid->grid();

@@ -26,7 +26,8 @@ TEST(AutomataErrors, InputOutOfRange)
 	const double nan = std::nan("");
 	for (auto field : { &Automaton::position, &Automaton::velocity })
 		for (int c = 0; c < dim; c++)
-			for (double v : { nan, infinite, -infinite }) EXPECT_SAYS(bad([&](Automaton& a) { (a.*field)[c] = v; }), "finite");
+			for (double v : { nan, infinite, -infinite })
+				EXPECT_SAYS(bad([&](Automaton& a) { (a.*field)[c] = v; }), "finite");
 	for (auto field : { &Automaton::omega, &Automaton::angle, &Automaton::mass, &Automaton::inertia, &Automaton::diameter, &Automaton::strength })
 		for (double v : { nan, infinite, -infinite })
 			EXPECT_SAYS(bad([&](Automaton& a) { a.*field = v; }), "finite");

@@ -319,9 +319,7 @@ TEST(AutomataStep, UnlinkedPairHasNoTensionAndFrictionIsBounded)
 			const Vec<double> x = S.between(i, j), f = C.between.at(c); // f: force on the owner
 			const double      r = std::sqrt(S.distance2(i, j)), normal = plainDot(f, x) / r, shear = plainCross(x, f) / r;
 			const double      along = plainDot(x, S.velocity.at(j) - S.velocity.at(i)) / r;
-			if (r >= std::max(C.rest[c], C.rest[C.reverse[c]])) {
-				EXPECT_EQ(sumOfMagnitudes(f), 0.);
-			}
+			if (r >= std::max(C.rest[c], C.rest[C.reverse[c]])) { EXPECT_EQ(sumOfMagnitudes(f), 0.); }
 			EXPECT_LE(normal, 1e-9 * (1 + std::fabs(normal)));
 			if (along >= 0) { EXPECT_LE(std::fabs(shear), C.friction[c] * -normal * (1 + 1e-9) + 1e-6); } // without viscous push
 		}
