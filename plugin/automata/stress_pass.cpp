@@ -148,7 +148,7 @@ namespace {
 	/// (5f), and the pushes of the affine rule with it and with the viscous pressure.
 	void meanPressures(const BlockView& V)
 	{
-		const double       full = Lattice::cell(V.d);
+		const double       full = Lattice::cell(V.d), bulk = V.material.eos.bulkModulus();
 		alignas(64) double normals[blockSize];
 		for (int l = 0; l < blockSize; l++) normals[l] = 0.;
 		for (int k = 0; k < nLinks; k++) {
@@ -161,7 +161,7 @@ namespace {
 		}
 #pragma omp simd
 		for (int l = 0; l < blockSize; l++) {
-			const double all = meanPressure(V.P[l], normals[l], V.J[l], V.szz[l], V.invN[l], full, V.cell[l]);
+			const double all = meanPressure(V.P[l], normals[l], V.J[l], V.szz[l], V.invN[l], full, V.cell[l], bulk);
 			V.mean[l]        = V.factor[l] > 0. ? all : V.P[l];
 		}
 		for (int l = 0; l < blockSize; l++) { // factor = 0: the push is zero

@@ -173,7 +173,10 @@ void McaLaw::finishPressure(Row& r) const
 	for (int k = 0; k < nLinks; k++)
 		if (const Side& s = r.link[k]; s.p) normals += mca::linkWeight(l.flags, k) * s.p->s[s.side];
 	const bool affine = l.rule == int(VolumeRule::affine) && l.factor > 0;
-	r.m->pressure     = affine ? mca::meanPressure(l.P, normals, r.m->volumeRatio, r.m->stressZZ, l.invN, mca::Lattice::cell(r.d), l.cell) : l.P;
+	const auto mean   = [&](Real bulk) {
+		return mca::meanPressure(l.P, normals, r.m->volumeRatio, r.m->stressZZ, l.invN, mca::Lattice::cell(r.d), l.cell, bulk);
+	};
+	r.m->pressure  = affine ? mean(r.material->eos.bulkModulus()) : l.P;
 	const Real sum = r.m->pressure + l.viscous, all = sum * l.cell;
 	l.viscousShare = sum != 0 ? l.viscous / sum : 0.;
 	l.txx *= all, l.txy *= all, l.tyx *= all, l.tyy *= all;

@@ -37,8 +37,8 @@ def test_switchesChangeNoBit(plugin, off):
 	digests = []
 	for options in ({}, off):
 		O.reset()
-		scene.block(200, 8, constants=scene.HARD)
-		scene.block(6, 8, at=(-103.2e-3, 0), constants=scene.HARD, velocity=(300., 0), mask=2)
+		scene.block(120, 8, constants=scene.HARD)
+		scene.block(6, 8, at=(-63.2e-3, 0), constants=scene.HARD, velocity=(300., 0), mask=2)
 		e = scene.engine(**options)
 		asleep = []
 		for _ in range(4):

@@ -252,7 +252,7 @@ TEST(AutomataPair, MeanPressureIsTheConjugateOfTheOwnDilation)
 		double       normals, szz, a, b;
 		const double slope = (energy(theta + h, a, b) - energy(theta - h, a, b)) / (2. * h);
 		energy(theta, normals, szz);
-		const double found = meanPressure(1e9, normals, 1., szz, invN, 0.7, 0.7) - 1e9;
+		const double found = meanPressure(1e9, normals, 1., szz, invN, 0.7, 0.7, G) - 1e9;
 		EXPECT_NEAR(found, -slope, 1e-6 * G * 1e-3) << trial;
 		if (trial % 4 == 3) EXPECT_NEAR(found, 0., 1e-12 * G) << trial;
 	}
