@@ -45,7 +45,8 @@ class McaState : public State {
 public:
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR(McaState, State, "State of an automaton. :yref:`McaEngine` fills it when it writes back to the bodies.",
-		((Real, pressure, 0, , "pressure, positive in compression [Pa]; output"))
+		((Real, pressure, 0, , "mean pressure, positive in compression [Pa]: that of the equation of state, in the affine rule "
+		    "with what the deviators of the sides do with the volume (5f), without viscosity; output"))
 		((Real, volumeRatio, 1, , "J = volume / volume at rest [-]; output"))
 		((Real, equivalentStress, 0, , "Mises stress [Pa]; output"))
 		((Real, plasticStrain, 0, , "equivalent plastic strain [-]; read at every look (at the start as initial hardening), by :yref:`McaLaw` in "

@@ -119,7 +119,8 @@ def test_aBodyAddedInTheHoleOfAnErasedOne(plugin):
 def test_aBodyAddedInFlightMeetsTheOther(plugin):
 
 	def change(ids):
-		return ids + block(4, 4, at=(-8 * D, 0), velocity=(200., 0.), mask=3)
+		# not head-on: in a symmetric meeting round-off decides which contact opens first when they part
+		return ids + block(4, 4, at=(-8 * D, 0), velocity=(200., 7.), mask=3)
 
 	s = both(lambda: block(8, 8), change, 20, 700)
 	assert s[:, 2].min() < 150 and s[:20, 2].max() > 1
