@@ -25,12 +25,20 @@ namespace {
 		}
 		return q;
 	}
-	/// The share of the viscosity in the pushes.
-	MCA_INLINE Tensor<v8> gatherViscous(const BlockView& V, const int32_t* j)
+	/// (6) over the vector, by both sides' shares H.
+	template <VolumeRule rule> MCA_INLINE v8 pressureOver(const BlockView& V, const double* H, int g, const int32_t* j, v8 w, v8 dij, v8 invR2)
 	{
-		v8 share;
-		for (int l = 0; l < lanes; l++) share[l] = V.node[nodeSize * size_t(j[l]) + viscousShareAt];
-		return gatherPush(V.pushOfAll, j) * share;
+		v8 over {};
+		for (int l = 0; l < lanes; l++)
+			over[l] = w[l] * (V.h[g + l] + H[j[l]]) * pressureShape<rule>(dij[l], invR2[l]);
+		return over;
+	}
+	/// The share of the viscosity in the pushes of automata.
+	MCA_INLINE v8 viscousShares(const BlockView& V, const int32_t* at)
+	{
+		v8 share, unused;
+		gather2(V.node + viscousShareAt, nodeSize, at, share, unused);
+		return share;
 	}
 	template <VolumeRule rule, bool intact, bool mixed, bool viscous, bool account> void run(const BlockView& V, const Store& S, const Extra& E)
 	{
@@ -44,8 +52,9 @@ namespace {
 			const m8      bits  = intact ? m8 {} : widen(V.flags + g);
 			Vec<v8>       force = none, ofPressure = none, ofViscosity = none;
 			v8            torque = {};
-			Tensor<v8>    push;
+			Tensor<v8>    push, viscousPush;
 			if (rule == VolumeRule::affine) push = gatherPush(V.pushOfAll, self + g);
+			if (account && rule == VolumeRule::affine) viscousPush = push * viscousShares(V, self + g);
 #pragma GCC unroll 6
 			for (int k = 0; k < nLinks; k++) {
 				const int32_t* j = V.others(k, g);
@@ -62,13 +71,12 @@ namespace {
 				const v8       area  = pairArea(w, dij);
 				const Pair<v8> mine  = V.stress(k, g), both { area * (mine.normal + theirs.normal), area * (mine.shear + theirs.shear) };
 				Vec<v8>        press; // the pressures push i by its negative
-				if (rule == VolumeRule::affine) press = choose<intact>(on, times(push + gatherPush(V.pushOfAll, j), k), none);
-				else {
-					v8 over;
-					for (int l = 0; l < lanes; l++)
-						over[l] = w[l] * (V.h[g + l] + H[j[l]]) * pressureShape<rule>(dij[l], invR2[l]);
-					press = r * over;
-				}
+				Tensor<v8>     theirPush;
+				if (rule == VolumeRule::affine) {
+					theirPush = gatherPush(V.pushOfAll, j);
+					press     = choose<intact>(on, times(push + theirPush, k), none);
+				} else
+					press = r * pressureOver<rule>(V, H, g, j, w, dij, invR2);
 				v8 along = both.normal * invR2;
 				if (viscous) {
 					const v8 closing = dot(r, other.velocity - v);
@@ -79,7 +87,7 @@ namespace {
 				}
 				if (account) ofPressure = ofPressure - press;
 				if (account && rule == VolumeRule::affine) { // what of it is viscous
-					const Vec<v8> q = choose<intact>(on, times(gatherViscous(V, self + g) + gatherViscous(V, j), k), none);
+					const Vec<v8> q = choose<intact>(on, times(viscousPush + theirPush * viscousShares(V, j), k), none);
 					ofViscosity     = ofViscosity - q, ofPressure += q;
 				}
 				force += linkForce(r, along, both.shear * invR2, press);

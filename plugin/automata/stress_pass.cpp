@@ -145,11 +145,11 @@ namespace {
 				sk[l] *= factor[l], tk[l] *= factor[l];
 		}
 	}
-	/// (5f), and the pushes of the affine rule with it and with the viscous pressure.
-	void meanPressures(const BlockView& V)
+	/// (5f), and the pushes of the affine rule with it and with the viscous pressure; account: the share of that in them, too.
+	void meanPressures(const BlockView& V, bool account)
 	{
 		const double       full = Lattice::cell(V.d), bulk = V.material.eos.bulkModulus();
-		alignas(64) double normals[blockSize];
+		alignas(64) double normals[blockSize], push[blockSize];
 		for (int l = 0; l < blockSize; l++) normals[l] = 0.;
 		for (int k = 0; k < nLinks; k++) {
 			const double* sk = V.s + k * blockSize;
@@ -163,12 +163,14 @@ namespace {
 		for (int l = 0; l < blockSize; l++) {
 			const double all = meanPressure(V.P[l], normals[l], V.J[l], V.szz[l], V.invN[l], full, V.cell[l], bulk);
 			V.mean[l]        = V.factor[l] > 0. ? all : V.P[l];
+			push[l]          = (V.mean[l] + V.viscous[l]) * V.cell[l];
 		}
-		for (int l = 0; l < blockSize; l++) { // factor = 0: the push is zero
-			double*      record = V.record + nodeSize * l;
-			const double q = V.viscous[l], all = V.mean[l] + q;
-			record[viscousShareAt] = all != 0. ? q / all : 0.;
-			for (int c = 0; c < pushSize; c++) V.push[pushSize * l + c] *= all * V.cell[l];
+		for (int l = 0; l < blockSize; l++) // factor = 0: the push is zero
+			for (int c = 0; c < pushSize; c++)
+				V.push[pushSize * l + c] *= push[l];
+		for (int l = 0; account && l < blockSize; l++) {
+			const double all = V.mean[l] + V.viscous[l];
+			V.record[nodeSize * l + viscousShareAt] = all != 0. ? V.viscous[l] / all : 0.;
 		}
 	}
 	double fractureCriteria(const BlockView& V, const Sums& sums, const Returns& R)
@@ -204,7 +206,7 @@ namespace {
 		if (contacts) std::copy(factor, factor + blockSize, X.scale + V.base);
 		scaleLinks(V, factor);
 		if (affine)
-			meanPressures(V);
+			meanPressures(V, account);
 		else
 			std::copy(V.P, V.P + blockSize, V.mean);
 		if (V.material.fracture.active()) out.criterion = fractureCriteria(V, sums, R);
@@ -215,7 +217,7 @@ void stressPass(Store& S, size_t b, VolumeRule rule, double dt, const Extra& X, 
 {
 	const BlockView V(S, b);
 	const bool      affine = rule == VolumeRule::affine;
-	if (!(dt > 0.)) return affine ? meanPressures(V) : void(std::copy(V.P, V.P + blockSize, V.mean));
+	if (!(dt > 0.)) return affine ? meanPressures(V, work != nullptr) : void(std::copy(V.P, V.P + blockSize, V.mean));
 	dispatch(V.material.yield.kind, [&](auto kind) {
 		choices([&](auto intact, auto mixed,
 		            auto account) { run<kind.value, intact.value, mixed.value, account.value>(V, S, affine, dt, X, out, work); },
