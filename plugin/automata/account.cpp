@@ -19,7 +19,7 @@ Account Solver::account() const
 			const size_t i = b * blockSize + l;
 			v += volumeEnergy(m, S.cell[i], S.J[i], S.heat.empty() ? 0. : S.heat[i]);
 			if (S.factor[i] > 0. && S.blocks[b].contact)
-				v += coldEnergyAt(i, contactRatio(scratch.sum[i])); // affine rule: contacts have a volume of their own
+				v += contactEnergyAt(i, contactRatio(scratch.sum[i])); // affine rule: contacts have a volume of their own
 			q += deviatorEnergyOf(i);
 			if (S.flags[i] & tiedBit) { // its mass is on the grid; a free spin is its own
 				if (S.perInertia[i] > 0) k += 0.5 * S.inertia[i] * sqr(S.omega[i]), a += S.inertia[i] * S.omega[i];

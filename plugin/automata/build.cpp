@@ -4,6 +4,7 @@
 #include "space_order.hpp"
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <sstream>
 #include <unordered_map>
 
@@ -153,13 +154,60 @@ void Solver::makeLinks(const Solver* old)
 	placeLinks(near, old);
 	for (size_t i = 0; i < n; i++)
 		if (S.id[i] >= 0 && (S.flags[i] & linkBits) != linkBits) S.flags[i] |= exposedBit;
+	makeOutlines(old);
+}
+
+/// What automata are at the outlines of their bodies; those that were there before stay what they were, unless they have got a link.
+void Solver::makeOutlines(const Solver* old)
+{
+	Store&       S       = store;
+	const size_t n       = S.size();
+	const auto   isFresh = [&](size_t i) { return S.id[i] >= 0 && !(old && indexIn(*old, S.id[i]) >= 0); };
+	for (size_t i = 0; i < n; i++)
+		if (isFresh(i)) findTriangles(i);
+		else if (S.id[i] >= 0 && S.flags[i] & int32_t(linkBits) & ~old->store.flags[size_t(indexIn(*old, S.id[i]))])
+			S.flags[i] = withoutTriangles(S.flags[i]);
+	for (size_t i = 0; i < n; i++)
+		if (isFresh(i)) dropOutside(i);
 	if (!options.fullLinks)
 		for (size_t i = 0; i < n; i++)
-			if (S.id[i] >= 0 && S.weight[i] < 0.999 && !known(i)) halveLinks(i);
+			if (isFresh(i) && S.weight[i] < 0.999) halveLinks(i, isFresh);
+}
+
+/// Whether both ends of links k and k + 1 hold and are linked to each other.
+bool Solver::closes(size_t i, int k) const
+{
+	const Store&  S = store;
+	const size_t  j = size_t(S.neighbour[linkSlot(i, k)]);
+	const int32_t other = S.neighbour[linkSlot(i, nextLink(k))];
+	const int     between = (k + 2) % nLinks; // from one end to the other
+	return holds(S.flags[j], between) && S.neighbour[linkSlot(j, between)] == other;
+}
+void Solver::findTriangles(size_t i)
+{
+	int32_t&        flags = store.flags[i];
+	const Triangles t     = trianglesOf(flags, [&](int k) { return closes(i, k); });
+	flags = endsAtOutline(t, store.weight[i]) ? withTriangles(flags, t) : withoutTriangles(flags);
+}
+/// Two automata at outlines that no triangle joins are no neighbours in their body.
+void Solver::dropOutside(size_t i)
+{
+	Store&          S = store;
+	const Triangles t = trianglesIn(S.flags[i]);
+	for (int k = 0; t && k < nLinks; k++) {
+		if (!holds(S.flags[i], k) || trianglesBeside(t, k)) continue;
+		const size_t    j = size_t(S.neighbour[linkSlot(i, k)]);
+		const Triangles other = trianglesIn(S.flags[j]);
+		const int       back  = Lattice::opposite(k);
+		if (!other || trianglesBeside(other, back)) continue;
+		S.flags[i] &= ~slotBits(k), S.flags[j] &= ~slotBits(back);
+		S.neighbour[linkSlot(i, k)] = int32_t(i), S.neighbour[linkSlot(j, back)] = int32_t(j);
+		S.flags[i] |= exposedBit, S.flags[j] |= exposedBit;
+	}
 }
 
 /// Links along weighted rims: both ends are cut cells and the pair borders on one triangle of the lattice only.
-void Solver::halveLinks(size_t i)
+void Solver::halveLinks(size_t i, const std::function<bool(size_t)>& isFresh)
 {
 	Store&     S      = store;
 	const auto common = [&](size_t j) { // neighbours of both
@@ -173,7 +221,7 @@ void Solver::halveLinks(size_t i)
 	for (int k = 0; k < nLinks; k++) {
 		if (!((S.flags[i] >> k) & 1)) continue;
 		const size_t j    = size_t(S.neighbour[linkSlot(i, k)]);
-		const bool   half = S.weight[j] < 0.999 && common(j) <= 1;
+		const bool   half = isFresh(j) && S.weight[j] < 0.999 && common(j) <= 1; // at both ends or at none
 		if (half) S.flags[i] |= 1 << (halfShift + k);
 		sum += half ? 0.5 : 1.;
 	}
@@ -275,14 +323,21 @@ void Solver::classify()
 	Store& S = store;
 	for (size_t b = 0; b < S.blocks.size(); b++) {
 		Block& B = S.blocks[b];
-		B.intact = B.count == blockSize;
-		B.mixed  = false;
+		B.intact  = B.count == blockSize;
+		B.mixed   = false;
+		B.outline = false;
 		for (int l = 0; l < blockSize; l++) {
 			const int32_t f = S.flags[b * blockSize + l];
-			if ((f & linkBits) != linkBits || (f & halfBits)) B.intact = false;
-			for (int k = 0; k < nLinks; k++)
-				if ((f >> k) & 1) B.mixed |= S.speciesOf(S.neighbour[(b * nLinks + k) * blockSize + l]) != B.species;
+			if (!isWhole(f)) B.intact = false;
+			B.outline |= trianglesIn(f) != 0;
+			for (int k = 0; k < nLinks; k++) {
+				const int32_t j = S.neighbour[(b * nLinks + k) * blockSize + l];
+				if (!holds(f, k)) continue;
+				B.mixed |= S.speciesOf(j) != B.species;
+				B.outline |= trianglesIn(S.flags[j]) != 0;
+			}
 		}
+		B.intact &= !B.outline;
 	}
 }
 

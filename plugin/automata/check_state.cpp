@@ -76,7 +76,7 @@ namespace {
 			need(there ? S.id[i] >= 0 && size_t(S.id[i]) < place.size() && size_t(place[size_t(S.id[i])]) == i : S.id[i] == -1,
 			     "the number of an automaton");
 			need(there || S.flags[i] == 0, "padding");
-			need(!(S.flags[i] & ~(linkBits | halfBits | linkBits << hadShift | exposedBit | tiedBit)), "flags");
+			need(!(S.flags[i] & ~(linkBits | halfBits | linkBits << hadShift | exposedBit | tiedBit | int32_t(outlineBits))), "flags");
 			known += there;
 		}
 		size_t listed = 0;
@@ -114,14 +114,18 @@ namespace {
 		need(within(S.neighbour, S.size()), "a link");
 		for (size_t i = 0; i < S.size(); i++) {
 			const Block& b = S.blocks[i / blockSize];
-			need(!b.intact || ((S.flags[i] & linkBits) == linkBits && !(S.flags[i] & halfBits)), "a block with missing links");
+			need(!b.intact || (isWhole(S.flags[i]) && !b.outline), "a block with missing links");
+			const Triangles t = trianglesIn(S.flags[i]);
+			need(b.outline || !t, "the outline of a block");
 			for (int k = 0; k < nLinks; k++) {
-				if (!((S.flags[i] >> k) & 1)) continue;
+				need(!trianglesBeside(t, k) || holds(S.flags[i], k), "a triangle without links");
+				if (!holds(S.flags[i], k)) continue;
 				const size_t j    = size_t(S.neighbour[linkSlot(i, k)]);
 				const int    back = Lattice::opposite(k);
 				need(j != i && S.id[j] >= 0 && ((S.flags[j] >> back) & 1) && size_t(S.neighbour[linkSlot(j, back)]) == i,
 				     "a link that holds at one end only");
 				need(b.mixed || S.speciesOf(j) == b.species, "a link between two species");
+				need(b.outline || !trianglesIn(S.flags[j]), "an outline beside a block");
 			}
 		}
 	}

@@ -33,6 +33,12 @@ namespace {
 			over[l] = w[l] * (V.h[g + l] + H[j[l]]) * pressureShape<rule>(dij[l], invR2[l]);
 		return over;
 	}
+	MCA_INLINE v8 restDistances(const BlockView& V, const int32_t* j)
+	{
+		v8 d;
+		for (int l = 0; l < lanes; l++) d[l] = 0.5 * (V.d + V.diameterOfAll[j[l]]);
+		return d;
+	}
 	/// The share of the viscosity in the pushes of automata.
 	MCA_INLINE v8 viscousShares(const BlockView& V, const int32_t* at)
 	{
@@ -40,16 +46,25 @@ namespace {
 		gather2(V.node + viscousShareAt, nodeSize, at, share, unused);
 		return share;
 	}
+	/// pressurePush() of eight links.
+	MCA_INLINE Vec<v8> atOutline(const BlockView& V, const Tensor<v8>& own, const Tensor<v8>& other, const EightTriangles& mine, const int32_t* j, int k)
+	{
+		const EightTriangles theirs(V.flagsOfAll, j);
+		const Vec<v8>        push = times(own, outlineDirection(mine.of, k)) - times(other, outlineDirection(theirs.of, Lattice::opposite(k)));
+		return choose<false>(mine.any() | theirs.any(), push, times(own + other, k));
+	}
 	template <VolumeRule rule, bool intact, bool mixed, bool viscous, bool account> void run(const BlockView& V, const Store& S, const Extra& E)
 	{
 		const double *      H = S.h.data(), *s = S.s.data(), *tau = S.tau.data(), d = V.d; // of all
 		const PairViscosity own = ofLink(viscosityOf(V.material), rule);
+		const bool          outline = !intact && V.block.outline;
 		int32_t             self[blockSize];
 		for (int l = 0; l < blockSize; l++)
 			self[l] = int32_t(V.base) + l;
 		for (int g = 0; g < blockSize; g += lanes) {
 			const Vec<v8> x = load(V.position, g), v = load(V.velocity, g), none {};
 			const m8      bits  = intact ? m8 {} : widen(V.flags + g);
+			const EightTriangles triangles(V.flags + g);
 			Vec<v8>       force = none, ofPressure = none, ofViscosity = none;
 			v8            torque = {};
 			Tensor<v8>    push, viscousPush;
@@ -61,22 +76,20 @@ namespace {
 				const Motion   other  = gatherMotion(V.node, j);
 				const Pair<v8> theirs = stressesOfOthers(s, tau, j, k);
 				const Vec<v8>  r      = other.position - x;
-				v8            dij = splat(d);
-				if (mixed)
-					for (int l = 0; l < lanes; l++)
-						dij[l] = 0.5 * (d + V.diameterOfAll[j[l]]);
+				const v8       dij    = mixed ? restDistances(V, j) : splat(d);
 				const m8       on    = holding(bits, k);
 				const v8       w = choose<intact>(on, weights<intact>(bits, k), splat(0.));
 				const v8       r2 = choose<intact>(on, dot(r, r), dij * dij), invR2 = 1. / r2;
 				const v8       area  = pairArea(w, dij);
 				const Pair<v8> mine  = V.stress(k, g), both { area * (mine.normal + theirs.normal), area * (mine.shear + theirs.shear) };
-				Vec<v8>        press; // the pressures push i by its negative
-				Tensor<v8>     theirPush;
-				if (rule == VolumeRule::affine) {
-					theirPush = gatherPush(V.pushOfAll, j);
-					press     = choose<intact>(on, times(push + theirPush, k), none);
-				} else
-					press = r * pressureOver<rule>(V, H, g, j, w, dij, invR2);
+				const auto     pressureOf = [&](const Tensor<v8>& a, const Tensor<v8>& b) { // pushes i by its negative
+					return choose<intact>(on, outline ? atOutline(V, a, b, triangles, j, k) : times(a + b, k), none);
+				};
+				Tensor<v8> theirPush;
+				if (rule == VolumeRule::affine) theirPush = gatherPush(V.pushOfAll, j);
+				Vec<v8> press;
+				if (rule == VolumeRule::affine) press = pressureOf(push, theirPush);
+				else press = r * pressureOver<rule>(V, H, g, j, w, dij, invR2);
 				v8 along = both.normal * invR2;
 				if (viscous) {
 					const v8 closing = dot(r, other.velocity - v);
@@ -87,7 +100,7 @@ namespace {
 				}
 				if (account) ofPressure = ofPressure - press;
 				if (account && rule == VolumeRule::affine) { // what of it is viscous
-					const Vec<v8> q = choose<intact>(on, times(viscousPush + theirPush * viscousShares(V, j), k), none);
+					const Vec<v8> q = pressureOf(viscousPush, theirPush * viscousShares(V, j));
 					ofViscosity     = ofViscosity - q, ofPressure += q;
 				}
 				force += linkForce(r, along, both.shear * invR2, press);

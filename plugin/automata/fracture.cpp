@@ -9,6 +9,11 @@
 namespace mca::automata {
 
 double Solver::coldEnergyAt(size_t i, double J) const { return coldEnergy(store.materialOf(i), store.cell[i], J); }
+/// Of the volume that contacts give it, if it has links: in the affine rule a volume of its own.
+double Solver::contactEnergyAt(size_t i, double Jc) const
+{
+	return coldEnergy(store.materialOf(i), contactCell(store.diameter[i], store.cell[i], 1.), Jc);
+}
 
 /// f(automaton, link) for the pairs that fulfil a criterion, until it returns true.
 template <class F> void Solver::eachBreaking(F&& f) const
@@ -60,13 +65,23 @@ void Solver::breakLinks()
 	for (auto [i, k] : pairs) {
 		const size_t j = S.neighbour[linkSlot(i, k)];
 		if (!holds(S.flags[i], k)) continue; // seen from the other side before
-		S.flags[i] &= ~(1 << k), S.flags[j] &= ~(1 << Lattice::opposite(k));
-		S.flags[i] |= exposedBit, S.flags[j] |= exposedBit;
-		S.blocks[i / blockSize].intact = S.blocks[j / blockSize].intact = false;
+		unlink(i, k), unlink(j, Lattice::opposite(k));
 		counters.brokenLinks++;
 	}
 	for (size_t q = 0; q < touched.size(); q++)
 		keepVolume(touched[q], J[q]);
+}
+
+/// One end of a link that breaks. It stays known as one that has held; its stresses go on in the contact.
+void Solver::unlink(size_t i, int k)
+{
+	Store&       S      = store;
+	const size_t at     = linkSlot(i, k), j = size_t(S.neighbour[at]);
+	const double weight = linkWeight(S.flags[i], k), twoG = S.pairTwoG(S.speciesOf(i), j, arm(S.diameter[i], S.diameter[j]));
+	if (options.account) sums.fracture += lostAtBreak(S.diameter[i], weight, pairEnergy(S.s[at], S.tau[at], S.J[i], twoG));
+	S.s[at] *= weight, S.tau[at] *= weight;
+	S.flags[i] = withoutTriangles(S.flags[i] & ~(1 << k | 1 << (halfShift + k))) | exposedBit;
+	S.blocks[i / blockSize].intact = false;
 }
 
 /// det F of the links that hold, at the present positions.
@@ -77,7 +92,7 @@ double Solver::determinantNow(size_t i) const
 	for (int k = 0; k < nLinks; k++)
 		if (holds(S.flags[i], k)) {
 			const int32_t j = S.neighbour[linkSlot(i, k)];
-			addDyad(sum, k, S.between(i, j));
+			addDyad(sum, outlineTable.of(trianglesIn(S.flags[i]), k), S.between(i, j));
 		}
 	return linkDeterminant(sum, perArea(S.diameter[i]));
 }
@@ -137,11 +152,11 @@ void Solver::settleVolumes()
 			for (size_t c = first; c < last; c++)
 				C.rest[c] = s.restDistance(rule, distance(c), C.d[c]);
 		const bool heat = m.eos.heats(); // its volumetric energy is in the heat
-		if (options.account && s.holds) sums.fracture += affine ? coldEnergyAt(i, Jc) : 0.;
-		if (options.account && !s.holds && !heat) sums.fracture += coldEnergyAt(i, J);
+		if (options.account && s.holds) sums.fracture += affine ? contactEnergyAt(i, Jc) : 0.;
+		if (options.account && !s.holds && !heat) sums.fracture += coldEnergyAt(i, J) + (affine ? contactEnergyAt(i, Jc) - coldEnergyAt(i, Jc) : 0.);
 		if (s.holds) continue;
 		// what the contacts' own volume (5) had stored is from now on part of the internal energy
-		if (heat && affine) S.heat[i] += coldEnergyAt(i, Jc) / (S.cell[i] * m.eos.rho0);
+		if (heat && affine) S.heat[i] += contactEnergyAt(i, Jc) / (S.cell[i] * m.eos.rho0);
 		scaleStresses(i, Jc / S.J[i]); // stresses go on
 		for (size_t c = first; c < last; c++)
 			C.s[c] *= Jc / S.J[i], C.tau[c] *= Jc / S.J[i];

@@ -24,7 +24,7 @@ Solver Solver::knowing(const std::vector<Automaton>& automata, const std::vector
 			const int64_t j = known.indexOf(r.partner[k]);
 			if (j >= 0) S.neighbour[linkSlot(i, k)] = int32_t(j);
 			else if ((S.flags[i] >> (hadShift + k)) & 1) // its partner was erased
-				S.flags[i] = (S.flags[i] & ~((1 << k) | (1 << (halfShift + k)) | (1 << (hadShift + k)))) | exposedBit;
+				S.flags[i] = withoutTriangles(S.flags[i] & ~slotBits(k)) | exposedBit;
 		}
 	}
 	return known;
@@ -38,7 +38,7 @@ void Solver::inheritLinks(const Solver& old)
 	for (size_t i = 0; i < S.size(); i++) {
 		const int64_t o = S.id[i] < 0 ? -1 : indexIn(old, S.id[i]);
 		if (o < 0) continue;
-		S.flags[i] |= O.flags[o] & exposedBit;
+		S.flags[i] |= O.flags[o] & int32_t(exposedBit | outlineBits);
 		S.invN[i] = O.invN[o];
 		for (int k = 0; k < nLinks; k++) {
 			const size_t at = linkSlot(i, k), from = linkSlot(o, k);
@@ -46,11 +46,11 @@ void Solver::inheritLinks(const Solver& old)
 			const int32_t partner = O.id[O.neighbour[from]];
 			const int64_t j       = indexIn(old, partner) < 0 ? -1 : indexOf(partner);
 			if (j < 0) { // its partner was erased: the slot is free for a new automaton
-				S.flags[i] |= exposedBit;
+				S.flags[i] = withoutTriangles(S.flags[i]) | exposedBit;
 				continue;
 			}
 			S.neighbour[at] = int32_t(j), S.s[at] = O.s[from], S.tau[at] = O.tau[from];
-			S.flags[i] |= O.flags[o] & ((1 << k) | (1 << (halfShift + k)) | (1 << (hadShift + k)));
+			S.flags[i] |= O.flags[o] & slotBits(k);
 		}
 	}
 }
@@ -106,7 +106,7 @@ void Solver::inheritState(const Solver& old)
 		S.eqps[i] = O.eqps[o], S.dTheta[i] = O.dTheta[o];
 		S.temperature[i] = O.temperature[o], S.strength[i] = O.strength[o], S.criterion[i] = O.criterion[o], S.angle[i] = O.angle[o];
 		if (!S.heat.empty() && !O.heat.empty()) S.heat[i] = O.heat[o];
-		bool same = true;
+		bool same = trianglesIn(S.flags[i]) == trianglesIn(O.flags[o]);
 		for (int k = 0; k < nLinks; k++) {
 			const bool before = (O.flags[o] >> k) & 1, now = (S.flags[i] >> k) & 1;
 			same &= before == now && (!now || S.id[S.neighbour[linkSlot(i, k)]] == O.id[O.neighbour[linkSlot(o, k)]]);

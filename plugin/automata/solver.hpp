@@ -4,6 +4,7 @@
 // Leapfrog: positions at whole steps, velocities at half steps. computeForces() gives the forces at the present positions.
 #pragma once
 #include "contacts.hpp"
+#include <functional>
 #include <string>
 
 namespace mca::automata {
@@ -139,7 +140,11 @@ private:
 		double  angle[nLinks];
 	};
 	void   makeLinks(const Solver* old);
-	void   halveLinks(size_t i);
+	void   makeOutlines(const Solver* old);
+	void   halveLinks(size_t i, const std::function<bool(size_t)>& isFresh);
+	bool   closes(size_t i, int k) const;
+	void   findTriangles(size_t i);
+	void   dropOutside(size_t i);
 	void   placeLinks(const std::vector<Near>& near, const Solver* old);
 	/// Place of a number in the old solver, -1 when that was another automaton or there is none.
 	int64_t indexIn(const Solver& old, int32_t id) const { return size_t(id) < isNew.size() && isNew[size_t(id)] ? -1 : old.indexOf(id); }
@@ -181,7 +186,9 @@ private:
 	ForceShares sharesOf(size_t i) const;
 	void                    bookBlock(size_t b, double kick, double after, const Planes<const double>& velocity, const double* omega);
 	void        bookStep(double kick, double after);
+	void   unlink(size_t i, int k);
 	double coldEnergyAt(size_t i, double J) const;
+	double contactEnergyAt(size_t i, double Jc) const;
 	double deviatorEnergyOf(size_t i) const; ///< of links and szz [J/m]
 	template <class F> void eachAwake(F&& f);
 	template <class F> void archive(F&& f);

@@ -6,6 +6,7 @@
 #include "../kernels/automaton/force.hpp"
 #include "../kernels/automaton/fracture.hpp"
 #include "../kernels/automaton/links.hpp"
+#include "../kernels/automaton/outline.hpp"
 #include "fields.hpp"
 #include "vectors.hpp"
 #include <algorithm>
@@ -29,7 +30,8 @@ struct Species {
 struct Block {
 	int32_t species = 0;
 	int32_t count   = 0;     ///< automata in it; lanes above are padding
-	bool    intact  = false; ///< every lane holds all six links with full weight
+	bool    intact  = false; ///< every lane holds all six links with full weight, and no outline is near
+	bool    outline = false; ///< some automaton, or one that it is linked to, ends at an outline
 	bool    mixed   = false; ///< some link leads to another species
 	bool    contact = false; ///< some automaton has contacts
 	bool    awake   = true;

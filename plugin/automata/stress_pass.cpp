@@ -149,7 +149,7 @@ namespace {
 	void meanPressures(const BlockView& V, bool account)
 	{
 		const double       full = Lattice::cell(V.d), bulk = V.material.eos.bulkModulus();
-		alignas(64) double normals[blockSize], push[blockSize];
+		alignas(64) double normals[blockSize], acting[blockSize];
 		for (int l = 0; l < blockSize; l++) normals[l] = 0.;
 		for (int k = 0; k < nLinks; k++) {
 			const double* sk = V.s + k * blockSize;
@@ -162,16 +162,15 @@ namespace {
 #pragma omp simd
 		for (int l = 0; l < blockSize; l++) {
 			const double all = meanPressure(V.P[l], normals[l], V.J[l], V.szz[l], V.invN[l], full, V.cell[l], bulk);
-			V.mean[l]        = V.factor[l] > 0. ? all : V.P[l];
-			push[l]          = (V.mean[l] + V.viscous[l]) * V.cell[l];
+			const double mean = V.factor[l] > 0. ? all : V.P[l];
+			V.mean[l]         = shownPressure(V.P[l], mean, V.flags[l]);
+			acting[l]         = mean + V.viscous[l];
 		}
 		for (int l = 0; l < blockSize; l++) // factor = 0: the push is zero
 			for (int c = 0; c < pushSize; c++)
-				V.push[pushSize * l + c] *= push[l];
-		for (int l = 0; account && l < blockSize; l++) {
-			const double all = V.mean[l] + V.viscous[l];
-			V.record[nodeSize * l + viscousShareAt] = all != 0. ? V.viscous[l] / all : 0.;
-		}
+				V.push[pushSize * l + c] *= acting[l] * V.cell[l];
+		for (int l = 0; account && l < blockSize; l++)
+			V.record[nodeSize * l + viscousShareAt] = acting[l] != 0. ? V.viscous[l] / acting[l] : 0.;
 	}
 	double fractureCriteria(const BlockView& V, const Sums& sums, const Returns& R)
 	{

@@ -23,7 +23,7 @@ struct BlockView {
 	       *factor = at(store.factor), *rest = at(store.rest), *szz = at(store.szz), *eqps = at(store.eqps), *temperature = at(store.temperature),
 	       *heat = at(store.heat), *criterion = at(store.criterion), *s = at(store.s, nLinks), *tau = at(store.tau, nLinks),
 	       *record = at(store.node, nodeSize), *push = at(store.push, pushSize), *torque = at(store.torque);
-	const int32_t *flags = at(store.flags), *neighbour = at(store.neighbour, nLinks);
+	const int32_t *flags = at(store.flags), *neighbour = at(store.neighbour, nLinks), *flagsOfAll = store.flags.data();
 	BlockView(Store& S, size_t b)
 		: store(S)
 		, base(b * blockSize)
@@ -71,6 +71,20 @@ template <bool intact> MCA_INLINE v8 weights(m8 flags, int k)
 {
 	return choose<intact>(((flags >> (halfShift + k)) & 1) != 0, splat(intact ? 1. : 0.5), splat(1.));
 }
+
+/// Triangles of eight automata; at: their flags, one behind the other, or where they stand among those of all.
+struct EightTriangles {
+	alignas(32) int32_t of[lanes];
+	explicit EightTriangles(const int32_t* flags)
+	{
+		for (int l = 0; l < lanes; l++) of[l] = int32_t(trianglesIn(flags[l]));
+	}
+	EightTriangles(const int32_t* flagsOfAll, const int32_t* at)
+	{
+		for (int l = 0; l < lanes; l++) of[l] = int32_t(trianglesIn(flagsOfAll[at[l]]));
+	}
+	m8 any() const { return widen(of) != 0; }
+};
 
 /// f(b1, b2, ...) with these truth values as compile-time constants.
 template <class F> MCA_INLINE void choices(F&& f) { f(); }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Pass 1: volume of each automaton from its links, pressure, and what it pushes its neighbours with.
 #include "../kernels/automaton/force.hpp"
+#include "../kernels/automaton/limit.hpp"
 #include "passes.hpp"
 #include "view.hpp"
 
@@ -75,11 +76,22 @@ namespace {
 		SymmetricLanes<blockSize> directions;   ///< of e_k (x) e_k; not filled where all links hold
 		alignas(64) double nearest2[blockSize]; ///< smallest r^2 [m2]
 	};
+	/// The same for an automaton at an outline: with the directions of its triangles instead of those of its links.
+	MCA_INLINE void addAtOutline(Tensor<v8>& sum, Symmetric<v8>& e, const EightTriangles& triangles, int k, m8 on, Vec<v8> r)
+	{
+		const Vec<v8> c      = outlineDirection(triangles.of, k);
+		Symmetric<v8> square = {}, direction = {};
+		addSquare(square, c), addDirection(direction, k, on ? splat(1.) : splat(0.));
+		addEither(e, triangles.any(), square, direction);
+		addDyad(sum, c, r);
+	}
 	template <bool intact> MCA_INLINE void sumLinks(const BlockView& V, LinkSums& to)
 	{
+		const bool outline = !intact && V.block.outline;
 		for (int g = 0; g < blockSize; g += lanes) {
 			const Vec<v8> own     = load(V.position, g), none {};
 			const m8      bits    = intact ? m8 {} : widen(V.flags + g);
+			const EightTriangles triangles(V.flags + g);
 			Tensor<v8>    sum     = {};
 			Symmetric<v8> e       = {};
 			v8            nearest = splat(1e300);
@@ -89,6 +101,10 @@ namespace {
 				Vec<v8>  r  = gatherPosition(V.node, V.others(k, g)) - own; // zero without a link: the slot leads to itself
 				nearest     = min(nearest, choose<intact>(on, dot(r, r), splat(V.d * V.d)));
 				r           = choose<intact>(on, r, none);
+				if (outline) {
+					addAtOutline(sum, e, triangles, k, on, r);
+					continue;
+				}
 				if (!intact) addDirection(e, k, on ? splat(1.) : splat(0.));
 				addDyad(sum, k, r);
 			}
@@ -118,14 +134,15 @@ namespace {
 			const PressureState     p = pressureStep(c, J, Jo, { V.P[l], hot ? V.heat[l] : 0. }, V.factor[l] > 0.);
 			const Tensor<double>    t     = affinePush(c, F, V.factor[l]);
 			const double            slope = volumeSlope(c, F, e, V.factor[l]);
-			stiffest                      = max(stiffest, affineStiffness(c, J, slope, L.nearest2[l]));
+			const bool outline = !intact && trianglesIn(V.flags[l]);
+			stiffest           = max(stiffest, affineStiffness(c, J, slope, L.nearest2[l], outline));
 			V.dTheta[l] = dilation(J, Jo), V.J[l] = J, V.P[l] = p.P;
 			const double q = V.factor[l] > 0. ? viscosity.pressure(V.dTheta[l], slope) : 0.;
 			V.viscous[l]   = perMove > 0. ? q : V.viscous[l]; // forces once more without a move: as before
 			if (hot) V.heat[l] = p.e;
 			L.dyads.set(l, t);
 			closing = max(closing, -V.dTheta[l]);
-			widest  = max(widest, J);
+			widest  = max(widest, outline ? turningAtOutlines * J : J);
 			nearest = min(nearest, L.nearest2[l] / c.d2);
 			clampCount += J - 1. < c.clampAt ? 1 : 0;
 			badCount += validVolume(J) ? 0 : 1;
@@ -135,8 +152,9 @@ namespace {
 #pragma omp simd reduction(max : stiffest) reduction(+ : clampCount)
 			for (int l = 0; l < blockSize; l++) {
 				const double J = contactRatio(contactSum[l]);
-				V.h[l]         = pressureShare<ofContacts(VolumeRule::affine)>(pressure<law>(c.eos, J - 1.), J, V.cell[l] * (1. / nLinks));
-				stiffest       = max(stiffest, stiffness(c, J));
+				const double cell = contactCell(V.d, V.cell[l], V.factor[l]);
+				V.h[l]            = pressureShare<ofContacts(VolumeRule::affine)>(pressure<law>(c.eos, J - 1.), J, cell * (1. / nLinks));
+				stiffest          = max(stiffest, stiffness(c, J) * (cell / V.cell[l]));
 				clampCount += J - 1. < c.clampAt ? 1 : 0;
 			}
 		}

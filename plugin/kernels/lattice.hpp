@@ -36,9 +36,22 @@ template <class T> MCA_INLINE void addDyad(Tensor<T>& sum, int k, Vec<T> v)
 	sum.xx = fma(Lattice::x[k], v[0], sum.xx), sum.yx = fma(Lattice::x[k], v[1], sum.yx);
 	if (Lattice::y[k] != 0.) sum.xy = fma(Lattice::y[k], v[0], sum.xy), sum.yy = fma(Lattice::y[k], v[1], sum.yy);
 }
+/// c (x) c in a sum over links.
+template <class T> MCA_INLINE void addSquare(Symmetric<T>& sum, Vec<T> c)
+{
+	sum.xx = fma(c[0], c[0], sum.xx), sum.xy = fma(c[0], c[1], sum.xy), sum.yy = fma(c[1], c[1], sum.yy);
+}
+/// v (x) c in a sum over links.
+template <class T> MCA_INLINE void addDyad(Tensor<T>& sum, Vec<T> c, Vec<T> v)
+{
+	sum.xx = fma(c[0], v[0], sum.xx), sum.yx = fma(c[0], v[1], sum.yx);
+	sum.xy = fma(c[1], v[0], sum.xy), sum.yy = fma(c[1], v[1], sum.yy);
+}
 /// A times direction of link k.
 template <class T> MCA_INLINE Vec<T> times(const Tensor<T>& A, int k)
 {
 	return { fma(Lattice::x[k], A.xx, Lattice::y[k] * A.xy), fma(Lattice::x[k], A.yx, Lattice::y[k] * A.yy) };
 }
+/// A times c.
+template <class T> MCA_INLINE Vec<T> times(const Tensor<T>& A, Vec<T> c) { return { fma(c[0], A.xx, c[1] * A.xy), fma(c[0], A.yx, c[1] * A.yy) }; }
 }

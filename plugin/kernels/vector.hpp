@@ -49,6 +49,11 @@ template <class T> MCA_INLINE Tensor<T> operator+(const Tensor<T>& a, const Tens
 template <class T> MCA_INLINE T         determinant(const Tensor<T>& A) { return A.xx * A.yy - A.xy * A.yx; }
 /// d(det A)/dA
 template <class T> MCA_INLINE Tensor<T> cofactor(const Tensor<T>& A) { return { A.yy, -A.yx, -A.xy, A.xx }; }
+/// sum += a in the lanes that are on, else b
+MCA_INLINE void addEither(Symmetric<v8>& sum, m8 on, const Symmetric<v8>& a, const Symmetric<v8>& b)
+{
+	sum.xx += on ? a.xx : b.xx, sum.xy += on ? a.xy : b.xy, sum.yy += on ? a.yy : b.yy;
+}
 /// f times the unit tensor
 inline Symmetric<double> isotropic(double f) { return { f, 0., f }; }
 

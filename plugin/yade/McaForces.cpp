@@ -160,7 +160,8 @@ void McaLaw::stateEnergies(Scene& scene, Real& volumetric, Real& deviatoric, Rea
 		const auto& l = *m->law;
 		volumetric += mca::volumeEnergy(c, l.cell, m->volumeRatio, m->dissipated);
 		if (l.rule == int(mca::VolumeRule::affine) && l.factor > 0)
-			volumetric += mca::coldEnergy(c, l.cell, mca::contactRatio(l.contactSum)); // contacts have a volume of their own
+			volumetric += mca::coldEnergy( // contacts have a volume of their own
+				c, mca::contactCell(l.diameter, l.cell, l.factor), mca::contactRatio(l.contactSum));
 		kinetic += 0.5 * (m->mass * m->vel.squaredNorm() + m->inertia[2] * sqr(m->angVel[2]));
 		centre += 0.5 * m->mass * (meanVelocity(scene, b->id, *m, -0.5).squaredNorm() - m->vel.squaredNorm());
 		if (!(m->blockedDOFs & State::DOF_RZ) && m->inertia[2] > 0)

@@ -42,7 +42,7 @@ void McaLaw::checkResults()
 	for (auto& r : rows)
 		if (meets(r)) pressed = std::max(pressed, r.stiff * r.material->eos.rho0);
 	for (auto& r : rows)
-		r.limit = mca::stepLimit(*r.material, mca::VolumeRule(r.l->rule), r.d, r.stiff, meets(r) ? pressed : 0., r.closing, r.m->volumeRatio);
+		r.limit = mca::stepLimit(*r.material, mca::VolumeRule(r.l->rule), r.d, r.stiff, meets(r) ? pressed : 0., r.closing, r.turning);
 	for (auto& r : rows) {
 		if (r.bad) {
 			std::ostringstream o;

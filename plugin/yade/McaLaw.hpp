@@ -103,7 +103,7 @@ public:
 		Vector3r             motion = Vector3r::Zero(); ///< velocity [m/s] and spin [rad/s] of the last move
 		bool                 fresh  = false;            ///< has made no move
 		// of this step
-		Real   limit = 0, stiff = 0, closing = 0, nearestLink = 1, nearestContact = 1;
+		Real   limit = 0, stiff = 0, closing = 0, turning = 1, nearestLink = 1, nearestContact = 1;
 		bool   clampedNow = false, bad = false;
 		Real   plastic = 0, coupling = 0, friction = 0, heated = 0;
 	};
@@ -143,6 +143,7 @@ private:
 	void                       findContacts(Scene*);
 	bool                       breaks(const Row&, int k) const;
 	void                       breakLinks();
+	void                       unlink(Row&, const Side&, int k);
 	Real                       determinantNow(const Row&) const;
 	void                       keepVolume(int i, Real J);
 	void                       settleVolumes(bool account);
@@ -160,6 +161,7 @@ private:
 	void                       checkResults();
 	[[noreturn]] void          overlapError(const Row&, const Side&, Real ratio) const;
 	Real                       coldEnergyAt(const Row&, Real J) const;
+	Real                       contactEnergyAt(const Row&, Real Jc) const;
 	void                       stateEnergies(Scene&, Real& volumetric, Real& deviatoric, Real& kinetic, Real& centre) const;
 	void                       bookEnergies(Scene*);
 	void                       refuseWhileRunning(const char* what) const;

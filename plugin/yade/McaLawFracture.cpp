@@ -2,8 +2,11 @@
 // McaLaw: breaking of links and exchange of volume, at the steps and in the order of plugin/automata.
 #include "McaLaw.hpp"
 #include "McaVec.hpp"
+#include <core/Omega.hpp>
+#include <core/Scene.hpp>
 #include <kernels/automaton/energy.hpp>
 #include <kernels/automaton/filter.hpp>
+#include <kernels/automaton/outline.hpp>
 
 namespace yade {
 using mca::nLinks;
@@ -40,10 +43,8 @@ void McaLaw::breakLinks()
 		const Side s = r.link[k];
 		Row&       o = rows[size_t(s.other)];
 		const int  back = mca::Lattice::opposite(k);
-		r.lost += mca::linkWeight(r.l->flags, k) * s.p->s[s.side] / r.m->volumeRatio;
-		o.lost += mca::linkWeight(o.l->flags, back) * s.p->s[1 - s.side] / o.m->volumeRatio;
-		r.l->flags = (r.l->flags & ~(1 << k)) | mca::exposedBit, o.l->flags = (o.l->flags & ~(1 << back)) | mca::exposedBit;
-		s.p->linked = false;
+		unlink(r, s, k), unlink(o, { s.p, 1 - s.side, int(i) }, back);
+		s.p->linked = s.p->half = false;
 		s.p->startContact(distance(r, s)); // stresses go on
 		r.link[k] = o.link[back] = Side();
 		brokenLinks++;
@@ -53,6 +54,17 @@ void McaLaw::breakLinks()
 		keepVolume(touched[q], J[q]);
 }
 
+/// One end of a link that breaks. It stays known as one that has held; its stresses go on in the contact.
+void McaLaw::unlink(Row& r, const Side& s, int k)
+{
+	Real &     normal = s.p->s[s.side], &shear = s.p->tau[s.side];
+	const Real weight = mca::linkWeight(r.l->flags, k), J = r.m->volumeRatio;
+	if (Omega::instance().getScene()->trackEnergy) fracture += mca::lostAtBreak(r.d, weight, mca::pairEnergy(normal, shear, J, s.p->twoG));
+	r.lost += weight * normal / J;
+	normal *= weight, shear *= weight;
+	r.l->flags = mca::withoutTriangles(r.l->flags & ~(1 << k | 1 << (mca::halfShift + k))) | mca::exposedBit;
+}
+
 /// det F of the links that hold, at the present positions.
 Real McaLaw::determinantNow(const Row& r) const
 {
@@ -60,7 +72,7 @@ Real McaLaw::determinantNow(const Row& r) const
 	for (int k = 0; k < nLinks; k++) {
 		if (!r.link[k].p) continue;
 		const Vector3r x = rows[size_t(r.link[k].other)].state->se3.position - r.state->se3.position;
-		addDyad(sum, k, vec(x));
+		addDyad(sum, mca::outlineTable.of(mca::trianglesIn(r.l->flags), k), vec(x));
 	}
 	return mca::linkDeterminant(sum, mca::perArea(r.d));
 }
@@ -88,6 +100,8 @@ void McaLaw::keepVolume(int i, Real J)
 }
 
 Real McaLaw::coldEnergyAt(const Row& r, Real J) const { return mca::coldEnergy(*r.material, r.l->cell, J); }
+/// Of the volume that contacts give it, if it has links: in the affine rule a volume of its own.
+Real McaLaw::contactEnergyAt(const Row& r, Real Jc) const { return mca::coldEnergy(*r.material, mca::contactCell(r.d, r.l->cell, 1.), Jc); }
 
 /// Stresses of all its pairs, kept as J times them.
 void McaLaw::scaleStresses(const Row& r, Real ratio)
@@ -122,11 +136,12 @@ void McaLaw::settleVolumes(bool account)
 			const Side& s         = contacts[size_t(c)];
 			s.p->rest[s.side] = settling.restDistance(rule, distance(r, s), s.p->d);
 		}
-		if (account && settling.holds) fracture += affine ? coldEnergyAt(r, Jc) : 0.;
-		if (account && !settling.holds && !heat) fracture += coldEnergyAt(r, J); // else it is in the heat
+		if (account && settling.holds) fracture += affine ? contactEnergyAt(r, Jc) : 0.;
+		if (account && !settling.holds && !heat) // else it is in the heat
+			fracture += coldEnergyAt(r, J) + (affine ? contactEnergyAt(r, Jc) - coldEnergyAt(r, Jc) : 0.);
 		if (settling.holds) continue;
 		if (affine && heat) { // what the contacts' own volume (5) had stored is from now on part of the internal energy
-			r.m->dissipated += coldEnergyAt(r, Jc) / (r.l->cell * r.material->eos.rho0);
+			r.m->dissipated += contactEnergyAt(r, Jc) / (r.l->cell * r.material->eos.rho0);
 			r.l->P = r.m->pressure = mca::pressure(r.material->eos, Jc - 1.);
 		}
 		scaleStresses(r, Jc / now); // stresses go on

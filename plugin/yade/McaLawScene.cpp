@@ -5,6 +5,7 @@
 #include "McaLaw.hpp"
 #include <atomic>
 #include <core/InteractionLoop.hpp>
+#include <kernels/automaton/outline.hpp>
 #include <core/Scene.hpp>
 #include <pkg/common/Sphere.hpp>
 
@@ -52,6 +53,7 @@ namespace {
 	}
 	bool sameLinks(const McaLawState& l, int32_t flags, const vector<int>& partner)
 	{
+		if (mca::trianglesIn(l.flags) != mca::trianglesIn(flags)) return false;
 		for (int k = 0; k < nLinks; k++)
 			if (((l.flags ^ flags) >> k) & 1 || (((flags >> k) & 1) && l.partner[size_t(k)] != partner[size_t(k)])) return false;
 		return true;
@@ -233,7 +235,7 @@ void McaLaw::findLinks(Scene* scene)
 				throw mca::Error(
 					"body " + std::to_string(other) + " is linked to automaton " + std::to_string(r.id)
 					+ " but is no automaton any more; give it back its McaMat, Sphere and state, or erase it.");
-			r.l->flags = (r.l->flags & ~mca::slotBits(k)) | mca::exposedBit; // its partner was erased
+			r.l->flags = mca::withoutTriangles(r.l->flags & ~mca::slotBits(k)) | mca::exposedBit; // its partner was erased
 			r.l->partner[size_t(k)] = -1;
 			relinked.push_back(r.id);
 		}

@@ -3,6 +3,8 @@
 #include "McaLaw.hpp"
 #include "McaVec.hpp"
 #include <kernels/automaton/force.hpp>
+#include <kernels/automaton/limit.hpp>
+#include <kernels/automaton/outline.hpp>
 
 namespace yade {
 using mca::nLinks;
@@ -46,12 +48,14 @@ template <mca::EosKind law> void McaLaw::volumeBy(Row& r, bool withContacts)
 	const mca::PressureState        before { l.P, r.m->dissipated };
 	mca::Tensor<Real>          F = {};
 	mca::Symmetric<Real>       directions = {};
+	const mca::Triangles       triangles  = mca::trianglesIn(l.flags);
 	Real                       nearest2 = 1e300, J = 1;
 	for (int k = 0; k < nLinks; k++) {
 		const Vec<Real> x = r.link[k].p ? vectorTo(*r.state, *rows[size_t(r.link[k].other)].state) : Vec<Real> {};
 		nearest2          = std::min(nearest2, r.link[k].p ? square(x) : c.d2);
-		addDirection(directions, k, r.link[k].p ? 1. : 0.);
-		addDyad(F, k, x);
+		if (triangles) addSquare(directions, mca::outlineTable.of(triangles, k));
+		else addDirection(directions, k, r.link[k].p ? 1. : 0.);
+		addDyad(F, mca::outlineTable.of(triangles, k), x);
 	}
 	const auto         step = [&](bool ofLinks) { return mca::pressureStep(c, J, Jo, before, ofLinks); };
 	mca::PressureState now  = before;
@@ -62,13 +66,13 @@ template <mca::EosKind law> void McaLaw::volumeBy(Row& r, bool withContacts)
 			const auto push = mca::affinePush(c, F, l.factor);
 			l.txx = push.xx, l.txy = push.xy, l.tyx = push.yx, l.tyy = push.yy;
 			const Real slope = mca::volumeSlope(c, F, directions, l.factor);
-			r.stiff          = mca::affineStiffness(c, J, slope, nearest2);
+			r.stiff          = mca::affineStiffness(c, J, slope, nearest2, triangles);
 			if (lastMove > 0)
 				l.viscous = l.factor > 0 ? mca::BulkViscosity(*r.material, r.d, 1. / lastMove).pressure(mca::dilation(J, Jo), slope) : 0.;
 			if (!withContacts) return;
-			const Real Jc = mca::contactRatio(contactSum); // contacts have a volume of their own
-			l.pressureShare       = mca::pressureShare<mca::ofContacts(rule.value)>(mca::pressure<law>(c.eos, Jc - 1.), Jc, l.cell * (1. / nLinks));
-			r.stiff       = std::max(r.stiff, mca::stiffness(c, Jc));
+			const Real Jc = mca::contactRatio(contactSum), cell = mca::contactCell(r.d, l.cell, l.factor); // contacts have a volume of their own
+			l.pressureShare = mca::pressureShare<mca::ofContacts(rule.value)>(mca::pressure<law>(c.eos, Jc - 1.), Jc, cell * (1. / nLinks));
+			r.stiff         = std::max(r.stiff, mca::stiffness(c, Jc) * (cell / l.cell));
 		} else {
 			Real sum = 0;
 			for (int k = 0; k < nLinks; k++)
@@ -85,6 +89,7 @@ template <mca::EosKind law> void McaLaw::volumeBy(Row& r, bool withContacts)
 	r.m->volumeRatio = J, l.P = now.P, r.m->dissipated = now.e;
 	r.clampedNow  = mca::clamped(c.eos, J - 1.);
 	r.bad         = !mca::validVolume(J);
+	r.turning     = mca::trianglesIn(l.flags) && l.rule == int(VolumeRule::affine) ? mca::turningAtOutlines * J : J;
 	r.nearestLink = nearest2 / c.d2;
 	r.closing     = lastMove > 0 ? std::max(-l.dTheta, Real(0)) * r.d / lastMove : 0.;
 }
@@ -176,8 +181,8 @@ void McaLaw::finishPressure(Row& r) const
 	const auto mean   = [&](Real bulk) {
 		return mca::meanPressure(l.P, normals, r.m->volumeRatio, r.m->stressZZ, l.invN, mca::Lattice::cell(r.d), l.cell, bulk);
 	};
-	r.m->pressure  = affine ? mean(r.material->eos.bulkModulus()) : l.P;
-	const Real sum = r.m->pressure + l.viscous, all = sum * l.cell;
+	const Real acting = affine ? mean(r.material->eos.bulkModulus()) : l.P, sum = acting + l.viscous, all = sum * l.cell;
+	r.m->pressure     = mca::shownPressure(l.P, acting, l.flags);
 	l.viscousShare = sum != 0 ? l.viscous / sum : 0.;
 	l.txx *= all, l.txy *= all, l.tyx *= all, l.tyy *= all;
 }

@@ -12,7 +12,8 @@ public:
 	void postLoad(McaLawState&); ///< what is used as an index
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(McaLawState, Serializable, "What :yref:`McaLaw` keeps of an automaton from step to step.",
-		((int, flags, 0, Attr::readonly, "bits 0-5: link k holds; 8-13: it counts half; 16-21: it once held; 24: the automaton may touch something"))
+		((int, flags, 0, Attr::readonly, "bits 0-5: link k holds; 8-13: it counts half; 16-21: it once held; 24: the automaton may touch something; "
+		    "26-31: the triangle between links k and k + 1 belongs to the body, of an automaton at an outline (5g)"))
 		((vector<int>, partner, , Attr::readonly, "body at the other end of link k; -1: never linked [6]"))
 		((Real, cell, 0, Attr::readonly, "volume at rest, Omega0 times weight [m2]"))
 		((Real, invN, 0, Attr::readonly, "1 / number of slots [-]"))
@@ -22,7 +23,7 @@ public:
 		((Real, dTheta, 0, Attr::readonly, "last increment of the volume strain [-]"))
 		((Real, viscous, 0, Attr::readonly, "viscous pressure of the last move [Pa]"))
 		((Real, viscousShare, 0, Attr::readonly, "share of the viscous pressure in T of txx [-]"))
-		((Real, txx, 0, Attr::readonly, "affine rule: link k is pushed by T e_k [N/m]"))
+		((Real, txx, 0, Attr::readonly, "affine rule: link k is pushed by T e_k, at outlines by T c_k (5g) [N/m]"))
 		((Real, txy, 0, Attr::readonly, "see txx [N/m]"))
 		((Real, tyx, 0, Attr::readonly, "see txx [N/m]"))
 		((Real, tyy, 0, Attr::readonly, "see txx [N/m]"))
@@ -46,7 +47,7 @@ public:
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR(McaState, State, "State of an automaton. :yref:`McaEngine` fills it when it writes back to the bodies.",
 		((Real, pressure, 0, , "mean pressure, positive in compression [Pa]: that of the equation of state, in the affine rule "
-		    "with what the deviators of the sides do with the volume (5f), without viscosity; output"))
+		    "with what the deviators of the sides do with the volume (5f) but at outlines (5g), without viscosity; output"))
 		((Real, volumeRatio, 1, , "J = volume / volume at rest [-]; output"))
 		((Real, equivalentStress, 0, , "Mises stress [Pa]; output"))
 		((Real, plasticStrain, 0, , "equivalent plastic strain [-]; read at every look (at the start as initial hardening), by :yref:`McaLaw` in "

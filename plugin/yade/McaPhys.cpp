@@ -7,7 +7,7 @@
 #include <core/Scene.hpp>
 #include <kernels/automaton/contact.hpp>
 #include <kernels/automaton/force.hpp>
-#include <kernels/automaton/links.hpp>
+#include <kernels/automaton/outline.hpp>
 #include <kernels/automaton/volume.hpp>
 #include <mutex>
 #include <pkg/common/Sphere.hpp>
@@ -59,6 +59,11 @@ namespace {
 		     "bodies faster than 0.4 diameters per step need a smaller O.dt.";
 		McaPhys::leaveError(s.str());
 	}
+	mca::Tensor<Real> pushOf(const McaLawState& l) { return { l.txx, l.txy, l.tyx, l.tyy }; }
+	mca::Vec<Real>    pushOfBoth(const mca::Tensor<Real>& A, const mca::Tensor<Real>& B, const McaLawState& a, const McaLawState& b, int slot)
+	{
+		return mca::pressurePush(A, B, mca::trianglesIn(a.flags), mca::trianglesIn(b.flags), slot);
+	}
 	std::mutex        errorLock;
 	string            firstError;
 	std::atomic<bool> anyError { false };
@@ -74,8 +79,11 @@ void McaPhys::postLoad(McaPhys&)
 
 void McaLawState::postLoad(McaLawState&)
 {
-	const auto known = mca::linkBits | mca::halfBits | mca::linkBits << mca::hadShift | mca::exposedBit;
-	if (!(partner.size() == size_t(mca::nLinks) || (partner.empty() && flags == 0)) || (flags & ~known) || rule < 0 || rule > 2)
+	const auto known = mca::linkBits | mca::halfBits | mca::linkBits << mca::hadShift | mca::exposedBit | int(mca::outlineBits);
+	bool       linked = true; // the triangles between links that hold
+	for (int k = 0; k < mca::nLinks; k++)
+		linked &= mca::holds(flags, k) || !mca::trianglesBeside(mca::trianglesIn(flags), k);
+	if (!(partner.size() == size_t(mca::nLinks) || (partner.empty() && flags == 0)) || (flags & ~known) || !linked || rule < 0 || rule > 2)
 		throw mca::Error("McaLawState: flags = " + std::to_string(flags) + ", rule = " + std::to_string(rule) + " and " + std::to_string(partner.size())
 		                 + " partners in the file are no links of an automaton; the file is damaged or was edited.");
 }
@@ -202,7 +210,7 @@ bool Law2_ScGeom_McaPhys_Mca::go(shared_ptr<IGeom>& geom, shared_ptr<IPhys>& phy
                         return mca::contactForce(r, both, inv, q, mine + theirs);
                 }
                 mca::Vec<Real> push; // of the pressures, to the first body its negative
-                if (rule.value == VolumeRule::affine) push = times(mca::Tensor<Real> { a.txx + b.txx, a.txy + b.txy, a.tyx + b.tyx, a.tyy + b.tyy }, p.slot);
+                if (rule.value == VolumeRule::affine) push = pushOfBoth(pushOf(a), pushOf(b), a, b, p.slot);
                 else push = r * (w * (a.pressureShare + b.pressureShare) * shape(p.d));
                 return mca::linkForce(r, both.normal * inv + q, both.shear * inv, push);
         });
@@ -210,8 +218,7 @@ bool Law2_ScGeom_McaPhys_Mca::go(shared_ptr<IGeom>& geom, shared_ptr<IPhys>& phy
 	p.torque      = Vector2r(mca::arm(a.diameter, b.diameter), mca::arm(b.diameter, a.diameter)) * both.shear;
 	p.heatRate = q * along, p.viscousForce = vector3(r * q).head<2>();
 	if (p.linked && VolumeRule(a.rule) == VolumeRule::affine) {
-		const mca::Tensor<Real> A { a.txx, a.txy, a.tyx, a.tyy }, B { b.txx, b.txy, b.tyx, b.tyy };
-		p.viscousForce -= vector3(times(A * a.viscousShare + B * b.viscousShare, p.slot)).head<2>();
+		p.viscousForce -= vector3(pushOfBoth(pushOf(a) * a.viscousShare, pushOf(b) * b.viscousShare, a, b, p.slot)).head<2>();
 	}
 	const Vector3r n = vector3(r * std::sqrt(inv));
 	p.normalForce = -p.force.dot(n) * n;

@@ -36,7 +36,7 @@ public:
 		((bool, linked, false, Attr::readonly, "the link holds; only McaLaw makes links, so a broken pair stays broken"))
 		((bool, active, false, Attr::readonly, "not linked, and both automata may touch something"))
 		((bool, wall, false, Attr::readonly, "one body is no automaton: penalty contact kn, ks with Coulomb friction"))
-		((bool, half, false, Attr::readonly, "link along a weighted rim, which counts half"))
+		((bool, half, false, Attr::readonly, "link that counts half: along a weighted rim, or with one triangle of its body beside it"))
 		((int, slot, 0, Attr::readonly, "place of the link around the first body, 60 slot degrees in the frame of the packing; (slot + 3) % 6 around "
 		    "the second"))
 		((Vector2r, s, Vector2r::Zero(), Attr::readonly, "J times normal deviatoric stress of each side [Pa]"))

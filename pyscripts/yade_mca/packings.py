@@ -151,8 +151,8 @@ def _hexagon(d, angle):
 	return d / math.sqrt(3) * np.stack((np.cos(a), np.sin(a)), axis=1) @ _rotation(angle)
 
 
-def _fittedOrigin(outline, d, angle):
-	"""A lattice point such that whole cells fill the outline as evenly as can be: see hexagonal()."""
+def _fittedOrigin(outline, d, angle, triangles):
+	"""A lattice point such that whole cells, or triangles, fill the outline as evenly as can be: see hexagonal()."""
 	lo, hi = np.array(outline.bounds()[:2]), np.array(outline.bounds()[2:])
 	center, axes = 0.5 * (lo + hi), _rotation(angle)
 	if not isinstance(outline, Rectangle):
@@ -165,6 +165,8 @@ def _fittedOrigin(outline, d, angle):
 		return center
 	pitch = 0.5 * math.sqrt(3) * d
 	count = np.maximum(np.round(along / (d, pitch)), 1)
+	if triangles:  # rows lie on the outline, and the ends of the rows by turns a quarter of d inside and outside
+		return center - (0.5 * count[0] - 0.25) * d * axes[0] - 0.5 * count[1] * pitch * axes[1]
 	return center - (0.5 * (count[0] - 1) * d + (0.25 * d if count[1] > 1 else 0.)) * axes[0] - 0.5 * (count[1] - 1) * pitch * axes[1]
 
 
@@ -198,17 +200,24 @@ def hexagonal(spacing, outline, angle=0., origin=None, rim='cells', minWeight=0.
 	                    the outline (polygons; with predicates as exact as the sampling). Automata on the outline get 1/2: tied rows.
 	           'full':  the same automata, all of weight 1: the body is the union of its cells, stiffness and mass match everywhere, and
 	                    its area differs from the outline's by at most the rim
+	           'triangles': the body is the triangles of the lattice whose middle is inside, and what lies between them, so that its outline runs
+	                    through the centres of its outermost automata. The weight is a sixth for each triangle; the engines see it by that and give the surface its
+	                    stiffness of second order (formulation, (5g)). minWeight is not used. Its area differs from the outline's by at most the rim
 	Raises PackingError, or OutlineError, for an argument that is out of range and when no automaton fits.
 	"""
 	d = number('spacing', spacing, PackingError, above=0, unit=' m')
 	angle = number('angle', angle, PackingError, low=-1e6, high=1e6, unit=' rad')
 	outline = asOutline(outline)
 	x0, y0, x1, y1 = outline.bounds()
-	if rim not in ('cells', 'full'):
-		raise PackingError("rim %r is neither 'cells' nor 'full'; it must be one of them" % (rim, ))
+	oneOf('rim', rim, ('cells', 'full', 'triangles'), PackingError)
 	minWeight = number('minWeight', minWeight, PackingError, low=0, below=0.5)  # tied rows have 1/2
-	origin = _fittedOrigin(outline, d, angle) if origin is None else array('origin', origin, PackingError, (2, ))
+	origin = _fittedOrigin(outline, d, angle, rim == 'triangles') if origin is None else array('origin', origin, PackingError, (2, ))
 	lattice, positions = _candidates(outline, d, angle, origin)
+	if rim == 'triangles':
+		weight = _trianglesInside(outline, lattice, positions) / 6.
+		if not weight.any():
+			raise PackingError('no triangle of spacing %g m fits the outline (%g x %g m): take a smaller spacing' % (d, x1 - x0, y1 - y0))
+		return _packing(positions, weight, d, angle, lattice, weight > 0, outline)
 	inside, cut = outline.classify(positions, d / math.sqrt(3))
 	cellArea = cellGeometry('hexagonal', d).volume
 	if rim == 'full':
@@ -229,7 +238,27 @@ def hexagonal(spacing, outline, angle=0., origin=None, rim='cells', minWeight=0.
 			_giveAway(table, lattice, positions, weight, keep)
 	if not keep.any():
 		raise PackingError('no automaton of spacing %g m fits the outline (%g x %g m): take a smaller spacing' % (d, x1 - x0, y1 - y0))
+	return _packing(positions, weight, d, angle, lattice, keep, outline)
+
+
+def _packing(positions, weight, d, angle, lattice, keep, outline):
 	return Packing(positions[keep], weight[keep], d, float(angle), lattice[keep], outline.area)
+
+
+def _trianglesInside(outline, lattice, positions):
+	"""For each lattice place how many of the six triangles around it are in the body: with their middle inside, or with all corners at such triangles."""
+	table = _Table(lattice)
+	around = np.stack([table.neighbour(lattice, k) for k in range(3)])
+	triangles = []
+	for a, b in ((around[0], around[1]), (around[1], around[2])):  # above and below: each triangle once
+		whole = np.flatnonzero((a >= 0) & (b >= 0))
+		triangles.append(np.stack((whole, a[whole], b[whole])))
+	corners = np.concatenate(triangles, axis=1)
+	inside = outline.classify(positions[corners].mean(axis=0), 0.)[0]
+	stays = np.zeros(len(lattice), bool)
+	stays[corners[:, inside]] = True
+	# three automata that are there make a triangle, as the engines see it
+	return np.bincount(corners[:, stays[corners].all(axis=0)].ravel(), minlength=len(lattice)).astype(float)
 
 
 def _giveAway(table, lattice, positions, weight, keep):

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from support import table
-from yade_mca.exact import (Hugoniot, Tate, chainReflection, elasticLimit, hexagonalSpeeds, hexagonalStableStep, impedanceMatch, lambSurface, piston,
-                            rayleighSpeed, shellStopRadius, shellVelocity, tatePlate, tiedRowReflection)
+from yade_mca.exact import (Hugoniot, Tate, chainReflection, elasticLimit, freeBeam, hexagonalSpeeds, hexagonalStableStep, impedanceMatch, kirsch,
+                            lambSurface, piston, rayleighSpeed, shellStopRadius, shellVelocity, tatePlate, tiedRowReflection)
 from yade_mca.exact.lattice import ROW
 from yade_mca.materials import get
 
@@ -170,3 +170,33 @@ def test_shell_collapse():
 		v = shellVelocity(*args, float(r['r_stop_mm']) * 1e-3)
 		assert v == pytest.approx(float(r['V0_inner_ms']), rel=2e-5)
 		assert shellStopRadius(*args, v) == pytest.approx(float(r['r_stop_mm']) * 1e-3, rel=1e-9)
+
+
+def test_beam():
+	"""Slender: the frequency of Euler and Bernoulli, in plane strain with E/(1 - nu^2); what shear and rotary inertia take off is of second order in the height."""
+	slender = freeBeam(1., 1e-3, 7800., 2e11, 0.3, 'stress')
+	assert slender == pytest.approx(22.373285448061 * 1e-3 * math.sqrt(2e11 / (12 * 7800.)), rel=1e-4)
+	assert freeBeam(1., 1e-3, 7800., 2e11, 0.3) / slender == pytest.approx(1 / math.sqrt(1 - 0.09), rel=1e-4)
+	w = [freeBeam(1., h, 7800., 2e11, 0.29) / h for h in (1e-3, 0.02, 0.04)]
+	assert (w[0] - w[2]) / (w[0] - w[1]) == pytest.approx(4, rel=0.03)
+	with pytest.raises(ValueError, match='height/length = 0.5'):
+		freeBeam(1., 0.5, 7800., 2e11, 0.3)
+
+
+def test_kirsch():
+	"""Three times the tension at the sides of the hole, minus one at its ends; far away a uniform field; displacement and stress by Hooke's law."""
+	nu = 0.29
+	at = lambda x, y: [v[0] for v in kirsch(np.array([x]), np.array([y]), 1., nu)]
+	for (x, y), S in (((0., 1.), 3.), ((1., 0.), -1.)):
+		_, mean, mises = at(x, y)
+		assert mean == pytest.approx(S * (1 + nu) / 3) and mises == pytest.approx(abs(S) * math.sqrt(1 - nu + nu**2))
+	assert at(300., 200.)[1] == pytest.approx((1 + nu) / 3, rel=1e-4)
+	rng, h = np.random.default_rng(1), 1e-5
+	for r, a in zip(rng.uniform(1.1, 4, 20), rng.uniform(0, 7, 20)):
+		x, y = r * math.cos(a), r * math.sin(a)
+		dx, dy = ((at(x + p, y + q)[0] - at(x - p, y - q)[0]) / (2 * h) for p, q in ((h, 0), (0, h)))
+		exx, eyy, exy = dx[0], dy[1], 0.5 * (dx[1] + dy[0])  # times 2G
+		theta = exx + eyy
+		s = np.array((exx - theta / 3, eyy - theta / 3, -theta / 3))
+		assert at(x, y)[1] == pytest.approx(theta * (1 + nu) / (3 * (1 - 2 * nu)), rel=1e-6, abs=1e-7)
+		assert at(x, y)[2] == pytest.approx(math.sqrt(1.5 * ((s**2).sum() + 2 * exy**2)), rel=1e-6)

@@ -31,7 +31,7 @@ RULES = [('affine', {}), ('inversePower', {}), ('meanDistance', {}), ('affine', 
          ('affine', dict(spallStrength=float('inf'), pairStrength=1.5e9, viscosityLinear=0., viscosityQuadratic=0.))]
 
 
-@pytest.mark.parametrize('rule, build', RULES)
+@pytest.mark.parametrize('rule, build', RULES + [('affine', dict(rim='triangles')), ('affine', dict(JOHNSON_COOK, rim='triangles'))])
 def test_sameTrajectoryAsTheEngine(plugin, rule, build):
 	"""Impact of two bodies with plastic flow, fracture and contact: 1000 steps, 1e-10 relative."""
 	a = trajectory('engine', 1000, rule, **build)
@@ -84,10 +84,11 @@ def test_brokenPairsStayBrokenAndLinksAreMadeOnce(plugin):
 	assert set(scene.density().links()) <= before and broken() > 50
 
 
-def test_momentumIsKept(plugin):
+@pytest.mark.parametrize('rim', ['cells', 'triangles'])
+def test_momentumIsKept(plugin, rim):
 	"""Action and reaction are the same number."""
 	from yade import O
-	ids = scene.impact()
+	ids = scene.impact(rim=rim)
 	scene.engines('law2', 2e-8)
 	start = sum(np.array(O.bodies[i].state.vel) * O.bodies[i].state.mass for i in ids)
 	O.run(300, True)
@@ -96,13 +97,14 @@ def test_momentumIsKept(plugin):
 	assert end[2] == 0
 
 
-def test_energyAccountIsThatOfTheEngine(plugin):
+@pytest.mark.parametrize('rim', ['cells', 'triangles'])
+def test_energyAccountIsThatOfTheEngine(plugin, rim):
 	"""Every item, and the sum of all against the kinetic energy at the start."""
 	from yade import O
 	items = {}
 	for road in 'engine', 'law2':
 		O.reset()
-		ids = scene.impact(speed=200.)
+		ids = scene.impact(speed=200., rim=rim)
 		O.trackEnergy = True
 		start = sum(0.5 * O.bodies[i].state.mass * np.dot(O.bodies[i].state.vel, O.bodies[i].state.vel) for i in ids)
 		scene.engines(road, 1e-8)

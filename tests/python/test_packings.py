@@ -65,6 +65,42 @@ def test_full_rim_is_the_union_of_cells():
 	assert p.area == pytest.approx(600, rel=0.05)
 
 
+@pytest.mark.parametrize('angle', [0., math.pi / 2, 0.3])
+def test_triangles_are_the_body(angle):
+	"""The weights are those of the triangles that the automata make, their area that of the outline within the rim; straight sides are on the outline."""
+	pitch = 0.5 * math.sqrt(3)
+	size = np.array((30., 24 * pitch)) if angle == 0 else np.array((24 * pitch, 30.))
+	p = hexagonal(1., Rectangle((3, -2), size), angle=angle, rim='triangles')
+	assert np.allclose(p.weight * 6, np.round(p.weight * 6), atol=1e-12) and set(np.round(p.weight * 6)) <= {1, 2, 3, 4, 5, 6}
+	assert p.area == pytest.approx(size.prod(), rel=1e-12 if angle in (0., math.pi / 2) else 0.03)
+	centre = (p.weight[:, None] * p.positions).sum(axis=0) / p.weight.sum()
+	if angle == 0.3: return
+	assert np.allclose(centre, (3, -2), atol=1e-12)
+	straight = 1 if angle == 0 else 0
+	assert np.ptp(p.positions[:, straight]) == pytest.approx(size[straight], rel=1e-12)
+	assert p.positions[:, straight].min() == pytest.approx((3, -2)[straight] - 0.5 * size[straight], abs=1e-12)
+
+
+@pytest.mark.parametrize('outline, angle', [(disc((0, 0), 7.4), 0.), (disc((0, 0), 10.), 0.35), (Rectangle((0, 0), (30, 12)), 0.26),
+                                            (Polygon(20 * np.array(((-1, -1), (1, -1), (1, 1), (-1, 1))), [10 * np.array(((-1, 0), (0, -1), (1, 0), (0, 1)))]), 0.1)])
+def test_weights_are_the_triangles_of_the_neighbours(outline, angle):
+	"""As the engines count them: three automata that are neighbours of each other make a triangle."""
+	p = hexagonal(1., outline, angle=angle, rim='triangles')
+	near = np.hypot(*(p.positions[:, None] - p.positions[None]).transpose(2, 0, 1)) < 1.1
+	np.fill_diagonal(near, False)
+	triangles = np.diag(near.astype(int) @ near @ near) // 2
+	assert np.array_equal(triangles, np.round(6 * p.weight).astype(int))
+
+
+def test_triangles_of_other_outlines():
+	ring = Polygon(20 * np.array(((-1, -1), (1, -1), (1, 1), (-1, 1))), [8 * np.array(((-1, -1), (1, -1), (1, 1), (-1, 1)))])
+	for outline, area in ((ring, 1600 - 256), (disc((0, 0), 15.), math.pi * 225)):
+		p = hexagonal(1., outline, rim='triangles')
+		assert p.area == pytest.approx(area, rel=0.025)
+	with pytest.raises(PackingError, match='no triangle of spacing'):
+		hexagonal(1., Rectangle((0, 0.1), (0.2, 0.2)), origin=(0, 0), rim='triangles')
+
+
 @given(angle=st.floats(-7, 7))
 @settings(max_examples=20, deadline=None)
 def test_pairs_are_all_neighbours_at_one_spacing(angle):
@@ -113,7 +149,7 @@ def test_other_packings_are_refused_with_the_reason(name, word):
         (lambda: hexagonal(float('nan'), Rectangle((0, 0), (1, 1))), 'above 0'),
         (lambda: hexagonal(1., Rectangle((0, 0), (.1, .1)), origin=(.5, .5)), 'smaller spacing'),
         (lambda: hexagonal(1e-9, Rectangle((0, 0), (1, 1))), 'unit'),
-        (lambda: hexagonal(1., Rectangle((0, 0), (9, 9)), rim='half'), 'neither'),
+        (lambda: hexagonal(1., Rectangle((0, 0), (9, 9)), rim='half'), 'one of'),
         (lambda: Rectangle((0, 0), (-1, 1)), 'above 0'),
         (lambda: Polygon([(0, 0), (1, 1), (2, 2)]), 'no area'),
         (lambda: hexagonal(1., 5), 'outline'),

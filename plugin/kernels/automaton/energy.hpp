@@ -12,6 +12,9 @@ inline double volumeEnergy(const Material& m, double cell, double J, double e) {
 /// Of one side of a pair, over the volume that it stands for [J/m3]: with the stiffness of the pair, which between unlike materials is neither's own. s, tau: J
 /// times the stresses.
 inline double pairEnergy(double s, double tau, double J, double twoG) { return twoG > 0 ? (sqr(s) + sqr(tau)) / (J * twoG) : 0.; }
+/// What one side of a link loses when it breaks and goes on as a contact, which has full weight: the force of the pair goes on, so its stress is that of the
+/// link times the weight. e = pairEnergy() of the link.
+inline double lostAtBreak(double d, double weight, double e) { return Lattice::cell(d) / nLinks * (weight - weight * weight) * e; }
 /// Of the deviator: pairs = sum of pairEnergy() with the weights of the links. A side stands for one share of the full cell; szz for the volume of all,
 /// which on weighted rims is not the cell.
 inline double deviatorEnergy(double G, double d, double pairs, double J, double szz, double invN)

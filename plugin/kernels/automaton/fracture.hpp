@@ -47,7 +47,8 @@ struct Settling {
 	/// J: volume to take over; Jc: that of the contacts; near: contacts about as near as in the packing.
 	Settling(VolumeRule rule, double J, double Jc, int near, double invN)
 		: holds(near >= 3 && J < Jc)
-		, need((rule == VolumeRule::meanDistance ? meanTerm<VolumeRule::meanDistance>(J) : meanTerm<VolumeRule::inversePower>(J)) / (near * invN))
+		, need((rule == VolumeRule::meanDistance ? meanTerm<VolumeRule::meanDistance>(J) : meanTerm<VolumeRule::inversePower>(J))
+		       / (near * (rule == VolumeRule::affine ? 1. / nLinks : invN))) // contactRatio()
 	{
 	}
 	/// Only neighbours about as near as in the packing can take over: a far one would push across a gap.

@@ -13,8 +13,11 @@ enum Flag : int32_t {
 	hadShift   = 16,      ///< bits from here: link k once held (a broken pair stays broken)
 	exposedBit = 1 << 24, ///< may touch something: rim, broken or flowing
 	tiedBit    = 1 << 25, ///< carried by the grid
+	outlineShift = 26,    ///< bits from here: triangle k belongs to the body, see outline.hpp
 };
+constexpr uint32_t outlineBits = uint32_t(linkBits) << outlineShift;
 static_assert(halfShift + nLinks <= hadShift && hadShift + nLinks <= 24, "the bits of the links overlap");
+static_assert(outlineShift + nLinks <= 32, "the bits of the triangles do not fit");
 
 inline bool   holds(int32_t flags, int k) { return (flags >> k) & 1; }
 inline bool   hasHeld(int32_t flags, int k) { return (flags >> (hadShift + k)) & 1; }

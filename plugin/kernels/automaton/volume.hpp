@@ -104,6 +104,9 @@ template <EosKind law> MCA_INLINE double stiffness(const VolumeConstants<law>& c
 	return (tangent<law>(c.eos, J - 1.) * bulk + c.G43 * shear) * c.perRho / J;
 }
 
+/// What contacts push with is the face of an automaton, not its mass: at a flat outline that of a whole cell [m2]. Debris, which has its volume from them, has
+/// what it weighs. cell: Omega0 times weight, factor: of the links' volume.
+MCA_INLINE double contactCell(double d, double cell, double factor) { return factor > 0. ? min(Lattice::cell(d), 2. * cell) : cell; }
 /// The volume that contacts alone give an automaton [-]; sum of their volume terms.
 MCA_INLINE double contactRatio(double sum) { return 1. / fma(sum, 1. / nLinks, 1.); }
 
@@ -150,10 +153,15 @@ template <EosKind law> MCA_INLINE double volumeSlope(const VolumeConstants<law>&
 	const double spread = e.xx * (F.yy * F.yy + F.xy * F.xy) - 2. * e.xy * (F.yy * F.yx + F.xy * F.xx) + e.yy * (F.yx * F.yx + F.xx * F.xx);
 	return max(factor * factor * spread * c.perArea * (1. / nLinks), 1.);
 }
+/// How much stiffer sound is at outlines than inside, over the slope of the volume: covers every body of triangles, of which a single one is the stiffest.
+constexpr double atOutlines = 2.1;
 /// stiffness(), and how much stiffer than in the perfect packing: the volume by its slope, the pair law by the closest link, nearest2 = smallest r^2 [m2].
-/// Covers edges and corners of free surfaces up to nu = 0.49, measured; beyond 4 what is torn and sheared.
-template <EosKind law> MCA_INLINE double affineStiffness(const VolumeConstants<law>& c, double J, double slope, double nearest2)
+/// Covers edges and corners of free surfaces up to nu = 0.49, measured; beyond 4 what is torn and sheared. At an outline light automata move light ones: see
+/// atOutlines.
+template <EosKind law> MCA_INLINE double affineStiffness(const VolumeConstants<law>& c, double J, double slope, double nearest2, bool outline)
 {
-	return stiffness<law>(c, J, max(min(slope * slope, 4.), slope), max(0.5 * c.d2 / nearest2, 1.));
+	const double inBody = max(min(slope * slope, 4.), slope);
+	const double shear  = max(0.5 * c.d2 / nearest2, 1.);
+	return stiffness<law>(c, J, outline ? atOutlines * slope : inBody, outline ? atOutlines * shear : shear);
 }
 }

@@ -6,7 +6,11 @@ waves        Rayleigh speed, Lamb's problem on the surface of a half-plane
 lattice      phase speeds of the hexagonal packing (Bloch analysis), reflection at a tied row
 penetrator   Alekseevskii-Tate rod, penetration of a plate
 shell        collapse of a plastic cylindrical shell
+beam         bending frequency of a free beam
+hole         a round hole in an elastic plane under tension
 """
+from .beam import freeBeam
+from .hole import kirsch
 from .lattice import chainReflection, hexagonalSpeeds, hexagonalStableStep, tiedLatticeReflection, tiedRowReflection
 from .penetrator import Tate, tatePlate
 from .shell import shellStopRadius, shellVelocity
@@ -14,6 +18,6 @@ from .shock import Hugoniot, elasticLimit, impedanceMatch, piston
 from .waves import lambSurface, rayleighSpeed, ricker
 
 __all__ = [
-        'Hugoniot', 'Tate', 'chainReflection', 'elasticLimit', 'hexagonalSpeeds', 'hexagonalStableStep', 'impedanceMatch', 'lambSurface', 'piston',
+        'Hugoniot', 'Tate', 'chainReflection', 'elasticLimit', 'freeBeam', 'hexagonalSpeeds', 'hexagonalStableStep', 'impedanceMatch', 'kirsch', 'lambSurface', 'piston',
         'rayleighSpeed', 'ricker', 'shellStopRadius', 'shellVelocity', 'tatePlate', 'tiedLatticeReflection', 'tiedRowReflection'
 ]

@@ -57,10 +57,10 @@ def drift(t, steps, factor):
 	return t.measures(value=abs(last / first - 1), atMost=bound, unit='drift of the mean energy over %g steps, %.2g of it dissipated' % (steps, lost))
 
 
-def freeAutomata(factor, steps, rule='affine', **changes):
+def freeAutomata(factor, steps, rule='affine', rim='full', angle=0., **changes):
 	t = watchedAutomata(contacts=False, dtFactor=factor, volumeRule=rule)
 	m = elastic(**dict(DAMPED, **changes))
-	p = hexagonal(D, disc((0, 0), 7.4 * D), rim='full')
+	p = hexagonal(D, disc((0, 0), 7.4 * D), rim=rim, angle=angle)
 	x, y = p.positions.T
 	v = 1e-4 * m.cS * np.stack((np.sin(200 * x) * np.cos(150 * y), np.cos(180 * x + 100 * y)), axis=1) + 1e-6 * m.cS * np.random.default_rng(2).standard_normal((len(p), 2))
 	addBodies(p, m, velocity=v - v.mean(axis=0), angularVelocity=1e-4 * m.cS / (7 * D))
@@ -149,6 +149,8 @@ def cases(quick, seed):
 	         StressCase('drift/grid/dtFactor0.3', lambda: freeGrid(0.3, steps), energy=SINGLE)]
 	undamped = dict(viscosityLinear=0.)
 	found.append(StressCase('drift/automata/noViscosity', lambda: freeAutomata(0.4, steps, **undamped), energy=SINGLE))
+	for name, angle in (('', 0.), ('/turned', 0.35)):
+		found.append(StressCase('drift/automata/noViscosity/triangles' + name, lambda a=angle: freeAutomata(0.4, steps, rim='triangles', angle=a, **undamped), energy=SINGLE))
 	found.append(StressCase('drift/automata/noViscosity/inversePower', lambda: freeAutomata(0.4, steps, 'inversePower', **undamped), energy=SINGLE))
 	if not quick:
 		found += [StressCase('drift/automata/dtFactor0.9', lambda: freeAutomata(0.9, steps), energy=SINGLE), StressCase('drift/automata/shockAdiabat', lambda: freeAutomata(0.4, steps, eos='shockAdiabat'), energy=SINGLE)]
