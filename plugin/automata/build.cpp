@@ -36,6 +36,7 @@ namespace {
 		if (!(a.eqps >= 0 && std::isfinite(a.eqps))) refuse("plastic strain " + number(a.eqps) + " must be finite and not negative.");
 		if (!(a.strength > 0)) refuse("strength factor " + number(a.strength) + " must be above zero.");
 		if (a.material < 0 || size_t(a.material) >= nMaterials) refuse("unknown material number " + std::to_string(a.material) + ".");
+		if (a.triangles < 0 || a.triangles > nLinks) refuse("triangles " + std::to_string(a.triangles) + " must be from 0 to 6.");
 		if (a.id < 0) refuse("negative number.");
 	}
 }
@@ -163,10 +164,15 @@ void Solver::makeOutlines(const Solver* old)
 	Store&       S       = store;
 	const size_t n       = S.size();
 	const auto   isFresh = [&](size_t i) { return S.id[i] >= 0 && !(old && indexIn(*old, S.id[i]) >= 0); };
+	const auto hasGotLinks = [&](size_t i) {
+		return S.id[i] >= 0 && !isFresh(i) && S.flags[i] & int32_t(linkBits) & ~old->store.flags[size_t(indexIn(*old, S.id[i]))];
+	};
 	for (size_t i = 0; i < n; i++)
-		if (isFresh(i)) findTriangles(i);
-		else if (S.id[i] >= 0 && S.flags[i] & int32_t(linkBits) & ~old->store.flags[size_t(indexIn(*old, S.id[i]))])
-			S.flags[i] = withoutTriangles(S.flags[i]);
+		if (isFresh(i)) {
+			const Triangles t = trianglesAround(i);
+			if (endsAtOutline(t, S.weight[i])) S.flags[i] = withTriangles(S.flags[i], t);
+		} else if (hasGotLinks(i))
+			S.flags[i] = withoutTriangles(S.flags[i]), S.invN[i] = 1. / slots(i);
 	for (size_t i = 0; i < n; i++)
 		if (isFresh(i)) dropOutside(i);
 	if (!options.fullLinks)
@@ -183,11 +189,33 @@ bool Solver::closes(size_t i, int k) const
 	const int     between = (k + 2) % nLinks; // from one end to the other
 	return holds(S.flags[j], between) && S.neighbour[linkSlot(j, between)] == other;
 }
-void Solver::findTriangles(size_t i)
+Triangles Solver::trianglesAround(size_t i) const
 {
-	int32_t&        flags = store.flags[i];
-	const Triangles t     = trianglesOf(flags, [&](int k) { return closes(i, k); });
-	flags = endsAtOutline(t, store.weight[i]) ? withTriangles(flags, t) : withoutTriangles(flags);
+	return trianglesOf(store.flags[i], [&](int k) { return closes(i, k); });
+}
+/// That an automaton which was made to end at an outline does: else its surface would be another one than the script has asked for.
+void Solver::checkOutlines(const std::vector<Automaton>& automata, const Solver* old) const
+{
+	for (const Automaton& a : automata) {
+		if (a.triangles == 0 || (old && indexIn(*old, a.id) >= 0)) continue;
+		const int    found = triangleCount(trianglesAround(size_t(indexOf(a.id))));
+		const double meant = a.triangles * (1. / nLinks);
+		if (found == a.triangles && std::fabs(a.weight - meant) < 1e-6) continue;
+		std::ostringstream s;
+		s << "automaton " << a.id << " at " << a.position << " m was made to stand for " << a.triangles << " of the " << nLinks
+		  << " triangles around it (state.triangles, rim='triangles'), but its neighbours make " << found << ", and its mass is " << a.weight
+		  << " of a full cell instead of " << meant << ". Take packings whole, give each body a mask of its own, and keep the density and the masses "
+		     "of packings.addBodies; or set state.triangles = 0 for an ordinary automaton of that mass.";
+		throw Error(s.str());
+	}
+}
+/// Sum of the weights of its links, at least what it weighs.
+double Solver::slots(size_t i) const
+{
+	double sum = 0;
+	for (int k = 0; k < nLinks; k++)
+		if (holds(store.flags[i], k)) sum += linkWeight(store.flags[i], k);
+	return std::max(sum, nLinks * store.weight[i]);
 }
 /// Two automata at outlines that no triangle joins are no neighbours in their body.
 void Solver::dropOutside(size_t i)
@@ -217,15 +245,12 @@ void Solver::halveLinks(size_t i, const std::function<bool(size_t)>& isFresh)
 				n += ((S.flags[i] >> a) & 1) && ((S.flags[j] >> b) & 1) && S.neighbour[linkSlot(i, a)] == S.neighbour[linkSlot(j, b)];
 		return n;
 	};
-	double sum = 0;
 	for (int k = 0; k < nLinks; k++) {
-		if (!((S.flags[i] >> k) & 1)) continue;
-		const size_t j    = size_t(S.neighbour[linkSlot(i, k)]);
-		const bool   half = isFresh(j) && S.weight[j] < 0.999 && common(j) <= 1; // at both ends or at none
-		if (half) S.flags[i] |= 1 << (halfShift + k);
-		sum += half ? 0.5 : 1.;
+		if (!holds(S.flags[i], k)) continue;
+		const size_t j = size_t(S.neighbour[linkSlot(i, k)]);
+		if (isFresh(j) && S.weight[j] < 0.999 && common(j) <= 1) S.flags[i] |= 1 << (halfShift + k); // at both ends or at none
 	}
-	S.invN[i] = 1. / std::max(sum, nLinks * S.weight[i]);
+	S.invN[i] = 1. / slots(i);
 }
 
 // Link k points at 60 k degrees in the frame of the packing. The frame is found from one automaton of each linked body and handed on from
@@ -361,6 +386,7 @@ void Solver::build(const std::vector<Automaton>& automata, const std::vector<Mat
 	unsettled.clear();
 	makeBlocks(automata);
 	makeLinks(old);
+	checkOutlines(automata, old);
 	makeAdjacency();
 	classify();
 	Store& S = store;

@@ -124,6 +124,7 @@ namespace {
 				const int    back = Lattice::opposite(k);
 				need(j != i && S.id[j] >= 0 && ((S.flags[j] >> back) & 1) && size_t(S.neighbour[linkSlot(j, back)]) == i,
 				     "a link that holds at one end only");
+				need(linkWeight(S.flags[i], k) == linkWeight(S.flags[j], back), "a link of two weights");
 				need(b.mixed || S.speciesOf(j) == b.species, "a link between two species");
 				need(b.outline || !trianglesIn(S.flags[j]), "an outline beside a block");
 			}

@@ -11,7 +11,7 @@ Solver Solver::knowing(const std::vector<Automaton>& automata, const std::vector
 	double d     = 0;
 	for (auto& a : apart)
 		d = std::max(d, a.diameter);
-	for (size_t i = 0; i < apart.size(); i++) apart[i].position = {}, apart[i].position[0] = 4. * d * double(i);
+	for (size_t i = 0; i < apart.size(); i++) apart[i].position = {}, apart[i].position[0] = 4. * d * double(i), apart[i].triangles = 0;
 	Options o;
 	o.contacts = false;
 	Solver known;

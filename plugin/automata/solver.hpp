@@ -30,6 +30,7 @@ struct Automaton {
 	int32_t material = 0, id = 0, group = 0;
 	Vec<bool>   free  = everyWay(); ///< per direction: moves as forces say
 	bool        freeR = true;
+	int         triangles = 0; ///< of the packing that it shall stand for, to end at an outline (5g); 0: what its mass says
 	bool    isNew = false; ///< build with an old solver: another automaton than the one that had this number there
 };
 
@@ -141,9 +142,11 @@ private:
 	};
 	void   makeLinks(const Solver* old);
 	void   makeOutlines(const Solver* old);
+	void   checkOutlines(const std::vector<Automaton>& automata, const Solver* old) const;
 	void   halveLinks(size_t i, const std::function<bool(size_t)>& isFresh);
 	bool   closes(size_t i, int k) const;
-	void   findTriangles(size_t i);
+	Triangles trianglesAround(size_t i) const;
+	double slots(size_t i) const;
 	void   dropOutside(size_t i);
 	void   placeLinks(const std::vector<Near>& near, const Solver* old);
 	/// Place of a number in the old solver, -1 when that was another automaton or there is none.

@@ -113,6 +113,7 @@ void McaBodies::add(const Body& b, int seed)
 	if (ms->strength == 0) ms->strength = drawStrength(*m, seed, b.id);
 	a.strength = ms->strength;
 	a.eqps     = ms->plasticStrain;
+	a.triangles = ms->triangles;
 	a.id       = b.id;
 	a.group    = b.groupMask;
 	for (int c = 0; c < mca::dim; c++)

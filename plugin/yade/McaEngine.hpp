@@ -134,7 +134,7 @@ private:
 		int         links = 0, brokenLinks = 0;
 		// read only
 		Real     mass = 0, inertia = 0, radius = 0, strength = 0;
-		int      mask = 0;
+		int      mask = 0, triangles = 0;
 		unsigned blocked = 0;
 	};
 	shared_ptr<mca::automata::Solver> solver;

@@ -117,7 +117,7 @@ void McaEngine::takeConstants(size_t q)
 	was.material = known[size_t(S.species[size_t(S.speciesOf(i))].material)].get();
 	if (!bodies[q]) return;
 	was.state = bodies[q]->state, was.shape = bodies[q]->shape;
-	if (was.state) was.blocked = was.state->blockedDOFs;
+	if (was.state) was.blocked = was.state->blockedDOFs, was.triangles = static_cast<const McaState&>(*was.state).triangles;
 }
 
 /// The body of a loaded engine held what the engine holds when both were saved; a script may have changed it since.

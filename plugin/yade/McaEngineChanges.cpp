@@ -41,6 +41,13 @@ namespace {
 	{
 		soon(s.se3), soon(s.vel), soon(s.angVel), soon(s.inertia[2]), soon(s.blockedDOFs), soon(s.temperature), soon(s.brokenLinks);
 	}
+	void refuseTriangles(const Body& b, int now, int was)
+	{
+		refuseBody(
+			b,
+			"state.triangles = " + std::to_string(now) + " was changed (from " + std::to_string(was)
+				+ "); where a body ends is found when it is taken over for the first time. Set it back.");
+	}
 } // namespace
 
 /// Its bits are those that body and engine had when they were last the same. Most bodies are, so nothing else is looked at then.
@@ -57,7 +64,8 @@ bool McaEngine::untouched(size_t q) const
 		| unlike(s.plasticStrain, was.plasticStrain);
 	d |= unlike(s.temperature, was.temperature) | unlike(s.stressZZ, was.stressZZ) | unlike(s.dissipated, was.dissipated)
 		| unlike(s.strength, was.strength);
-	d |= unlike(s.links, was.links) | unlike(s.brokenLinks, was.brokenLinks) | unlike(static_cast<const Sphere&>(*was.shape).radius, was.radius);
+	d |= unlike(s.links, was.links) | unlike(s.brokenLinks, was.brokenLinks) | unlike(s.triangles, was.triangles);
+	d |= unlike(static_cast<const Sphere&>(*was.shape).radius, was.radius);
 	return d == 0;
 }
 
@@ -141,6 +149,7 @@ McaEngine::Change McaEngine::changeOf(size_t q, bool& rebuild)
 		refuseBody(b, "state.temperature = " + numberText(s.temperature) + " K must be above 0 and at most 1e9.");
 	if (c.strength && !(s.strength > 0 && s.strength <= 1e9))
 		refuseBody(b, "state.strength = " + numberText(s.strength) + " must be above 0 and at most 1e9.");
+	if (s.triangles != was.triangles) refuseTriangles(b, s.triangles, was.triangles);
 	const Real radius = static_cast<const Sphere*>(b.shape.get())->radius;
 	if (differs(s.mass, was.mass) || differs(s.inertia[2], was.inertia) || differs(radius, was.radius))
 		refuseBody(

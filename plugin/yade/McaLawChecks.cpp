@@ -152,6 +152,9 @@ void McaLaw::checkState(const Row& r) const
 	const auto need = [&](const char* name, Real value, bool ok, const char* range) {
 		if (!ok) refuse("body ", r.id, ": state.", name, " = ", value, " must be ", range, ".");
 	};
+	if (m.triangles != l.triangles)
+		refuse("body ", r.id, ": state.triangles = ", m.triangles, " was changed (from ", l.triangles,
+		       "); where a body ends is found when it is taken in. Set it back.");
 	need("strength", m.strength, m.strength > 0 && m.strength <= 1e9, "above 0 and at most 1e9");
 	need("plasticStrain", m.plasticStrain, m.plasticStrain >= 0 && m.plasticStrain <= 1e6, "from 0 to 1e6");
 	need("temperature", m.temperature, m.temperature >= 0 && m.temperature <= 1e9, "from 0 to 1e9 [K]");

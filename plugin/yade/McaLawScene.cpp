@@ -109,9 +109,10 @@ void McaLaw::takeIn(Scene* scene)
 		for (int k = 0; k < nLinks; k++)
 			if (mca::hasHeld(S.flags[i], k)) partner[size_t(k)] = S.id[S.neighbour[automata::linkSlot(i, k)]];
 		if (!fresh && !sameLinks(l, S.flags[i], partner)) relinked.push_back(id);
-		l.flags = S.flags[i], l.partner = partner;
+		l.flags = S.flags[i], l.partner = partner, l.invN = S.invN[i];
 		if (!fresh) continue;
-		l.cell = S.cell[i], l.invN = S.invN[i], l.rest = S.rest[i], l.factor = S.factor[i], l.rule = int(o.volumeRule), l.diameter = r.d;
+		l.triangles = r.m->triangles;
+		l.cell = S.cell[i], l.rest = S.rest[i], l.factor = S.factor[i], l.rule = int(o.volumeRule), l.diameter = r.d;
 		r.m->volumeRatio = S.J[i], l.P = S.P[i], r.m->pressure = S.mean[i];
 	}
 	McaPhys::linking = true;

@@ -31,6 +31,7 @@ public:
 		((int, rule, 0, Attr::readonly, "volume rule: 0 affine, 1 inversePower, 2 meanDistance"))
 		((Real, contactSum, 0, Attr::readonly, "volume terms of the contacts [-]"))
 		((Real, diameter, 0, Attr::readonly, "with which the automaton was taken in [m]"))
+		((int, triangles, 0, Attr::readonly, "state.triangles with which it was taken in"))
 		((Real, moved, 0, Attr::readonly, "time step that led to the present position [s]"))
 		((Vector3r, from, Vector3r::Zero(), Attr::readonly, "position x, y [m] and turned angle [rad] before the last move"))
 		((Vector3r, expected, Vector3r::Zero(), Attr::readonly, "velocity x, y [m/s] and spin [rad/s] that the last move should have: another one "
@@ -59,6 +60,9 @@ public:
 		    ":yref:`McaLaw`"))
 		((Real, strength, 0, , "factor on the strengths of the material [-]; 0 when the automaton is taken in: drawn by the engine from the "
 		    "material's distribution and the engine's seed; read at every look, by :yref:`McaLaw` in every step"))
+		((int, triangles, 0, , "of the six triangles of the packing around it, those that it stands for, 1 to 6, where its body shall end through "
+		    "the centres of its outermost automata (5g); packings.addBodies() sets it for rim='triangles'. 0: what its mass says. Read when "
+		    "automata are taken in, which is refused when neighbours or mass make another number; a change later is refused"))
 		((int, links, 0, , "links that hold [-]; output"))
 		((int, brokenLinks, 0, , "links that broke [-]; output"))
 		((shared_ptr<McaLawState>, law, , Attr::hidden, "what :yref:`McaLaw` keeps of the automaton; empty with McaEngine"))

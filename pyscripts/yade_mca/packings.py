@@ -56,6 +56,7 @@ class Packing:
 	angle: float  #: direction of the close-packed rows against x [rad]
 	lattice: np.ndarray  #: (N, 2) int: place in the row, number of the row
 	outlineArea: float = None  #: [m2], None when not known exactly
+	rim: str = 'cells'  #: what the outermost automata stand for, see hexagonal()
 
 	def __len__(self):
 		return len(self.positions)
@@ -82,7 +83,11 @@ class Packing:
 		return replace(self, positions=self.positions + array('by', by, PackingError, (2, )))
 
 	def select(self, which):
-		"""The automata `which` (bool (N,), or indices from 0 to N - 1) as a packing of their own. Raises PackingError."""
+		"""The automata `which` (bool (N,), or indices from 0 to N - 1) as a packing of their own, each with the weight it has. Raises PackingError.
+
+		Parts of a packing with rim='triangles' are for bodies that are linked again, by the same mask: engines refuse an automaton whose triangles are not
+		all there. For a body that ends at the cut make a packing of its outline.
+		"""
 		which = self._chosen(which)
 		return replace(self, positions=self.positions[which], weight=self.weight[which], lattice=self.lattice[which], outlineArea=None)
 
@@ -201,8 +206,8 @@ def hexagonal(spacing, outline, angle=0., origin=None, rim='cells', minWeight=0.
 	           'full':  the same automata, all of weight 1: the body is the union of its cells, stiffness and mass match everywhere, and
 	                    its area differs from the outline's by at most the rim
 	           'triangles': the body is the triangles of the lattice whose middle is inside, and what lies between them, so that its outline runs
-	                    through the centres of its outermost automata. The weight is a sixth for each triangle; the engines see it by that and give the surface its
-	                    stiffness of second order (formulation, (5g)). minWeight is not used. Its area differs from the outline's by at most the rim
+	                    through the centres of its outermost automata. The weight is a sixth for each triangle; the engines see it by that, check it (state.triangles) and give
+	                    the surface its stiffness of second order (formulation, (5g)). minWeight is not used. Its area differs from the outline's by at most the rim
 	Raises PackingError, or OutlineError, for an argument that is out of range and when no automaton fits.
 	"""
 	d = number('spacing', spacing, PackingError, above=0, unit=' m')
@@ -217,7 +222,7 @@ def hexagonal(spacing, outline, angle=0., origin=None, rim='cells', minWeight=0.
 		weight = _trianglesInside(outline, lattice, positions) / 6.
 		if not weight.any():
 			raise PackingError('no triangle of spacing %g m fits the outline (%g x %g m): take a smaller spacing' % (d, x1 - x0, y1 - y0))
-		return _packing(positions, weight, d, angle, lattice, weight > 0, outline)
+		return _packing(positions, weight, d, angle, lattice, weight > 0, outline, rim)
 	inside, cut = outline.classify(positions, d / math.sqrt(3))
 	cellArea = cellGeometry('hexagonal', d).volume
 	if rim == 'full':
@@ -238,11 +243,11 @@ def hexagonal(spacing, outline, angle=0., origin=None, rim='cells', minWeight=0.
 			_giveAway(table, lattice, positions, weight, keep)
 	if not keep.any():
 		raise PackingError('no automaton of spacing %g m fits the outline (%g x %g m): take a smaller spacing' % (d, x1 - x0, y1 - y0))
-	return _packing(positions, weight, d, angle, lattice, keep, outline)
+	return _packing(positions, weight, d, angle, lattice, keep, outline, rim)
 
 
-def _packing(positions, weight, d, angle, lattice, keep, outline):
-	return Packing(positions[keep], weight[keep], d, float(angle), lattice[keep], outline.area)
+def _packing(positions, weight, d, angle, lattice, keep, outline, rim):
+	return Packing(positions[keep], weight[keep], d, float(angle), lattice[keep], outline.area, rim)
 
 
 def _trianglesInside(outline, lattice, positions):
@@ -319,7 +324,8 @@ def addBodies(packing, material, velocity=(0., 0.), angularVelocity=0., mask=1, 
 	mask         Body.mask (int, its 32 bits), by which other engines tell groups of bodies apart
 	fixed        True: all degrees of freedom are blocked, so that the bodies keep the velocity they have; else those out of the plane, 'zXY'
 	color        (r, g, b) in 0 ... 1, default grey
-	Mass is weight * density * Omega0 and the moment of inertia m R^2/2 (disc), both per 1 m of thickness.
+	Mass is weight * density * Omega0 and the moment of inertia m R^2/2 (disc), both per 1 m of thickness. With rim='triangles' state.triangles says for how
+	many each stands: an engine that finds another number, or another mass, refuses the body instead of giving it another surface.
 	Raises PackingError for an argument that is not finite, out of range or of the wrong shape, before there is a body.
 	"""
 	from ._yade import scene, yadeClass
@@ -337,10 +343,12 @@ def addBodies(packing, material, velocity=(0., 0.), angularVelocity=0., mask=1, 
 	Body, Sphere = yadeClass('Body'), yadeClass('Sphere')
 	radius = packing.radius
 	masses = packing.masses(m.density)
-	rows = zip(packing.positions.tolist(), np.broadcast_to(velocity, (len(packing), 2)).tolist(), masses.tolist(), (0.5 * radius**2 * masses).tolist())
+	triangles = np.round(6 * packing.weight).astype(int) if packing.rim == 'triangles' else np.zeros(len(packing), int)
+	rows = zip(packing.positions.tolist(), np.broadcast_to(velocity, (len(packing), 2)).tolist(), masses.tolist(), (0.5 * radius**2 * masses).tolist(),
+	           triangles.tolist())
 	blocked, spin = 'xyzXYZ' if fixed else 'zXY', (0., 0., angularVelocity)
 	bodies = []
-	for (x, y), (vx, vy), mass, inertia in rows:
+	for (x, y), (vx, vy), mass, inertia, around in rows:
 		b = Body()
 		b.shape = Sphere(radius=radius, color=color)
 		b.material = m
@@ -348,6 +356,7 @@ def addBodies(packing, material, velocity=(0., 0.), angularVelocity=0., mask=1, 
 		s.pos = s.refPos = (x, y, 0.)
 		s.vel, s.angVel = (vx, vy, 0.), spin
 		s.mass, s.inertia = mass, (inertia, inertia, inertia)
+		if around: s.triangles = around
 		s.blockedDOFs = blocked
 		b.state = s
 		b.mask = mask
@@ -361,7 +370,7 @@ def resetStates(ids):
 	ids: of bodies in O.bodies with material McaMat and shape Sphere, whole numbers. For bodies that another engine has moved: links are made anew from where
 	they are now (the engine refuses a packing that is too distorted for it), pressure, stresses, plastic strain and heat are gone, the temperature is the
 	material's referenceTemperature. An engine takes over bodies in this state when it gathers them for the first time; the one that has moved them refuses
-	the next step, so put a new one into O.engines.
+	the next step, so put a new one into O.engines. state.triangles is 0: where a body ends is seen by the masses, as far as it is still whole.
 	Raises PackingError for an id that is no automaton, before any state is changed.
 	"""
 	from ._yade import scene, yadeClass

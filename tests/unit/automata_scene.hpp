@@ -127,6 +127,15 @@ inline void impact(Solver& s, double speed, YieldKind kind = YieldKind::linearHa
 	s.build(list, { a, b }, o);
 }
 
+/// Change of the independent energy sum over its start, when the solver has run to `end` [s] with `factor` of the stable step.
+inline double energyDrift(Solver& s, double end, double factor)
+{
+	const double start = s.account().kinetic;
+	double       dt    = 0;
+	while (s.time < end) dt = run(s, 10, factor, dt);
+	return std::fabs(s.account().total() - start) / start;
+}
+
 template <class F> std::string refusal(F&& f)
 {
 	try {
