@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "isa.hpp"
-#include <omp.h>
 
 namespace mca {
 const char* isa()
@@ -13,5 +12,4 @@ const char* isa()
 	return "x86-64";
 #endif
 }
-int threads() { return omp_get_max_threads(); }
 } // namespace mca

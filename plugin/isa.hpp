@@ -5,6 +5,4 @@
 namespace mca {
 /// Instruction level this build of the solver library was compiled for: "x86-64", "x86-64-v3", "x86-64-v4".
 MCA_API const char* isa();
-/// Number of OpenMP threads the solvers will use.
-MCA_API int threads();
 } // namespace mca

@@ -189,7 +189,7 @@ void Solver::checkState() const
 	for (const Vectors* v : { &accountForce.volumetric, &accountForce.viscous })
 		for (const Doubles& plane : *v) sum(plane, true);
 	for (const Block& b : S.blocks) need(!b.contact || scratch.sum.size() == n, "a block with contacts");
-	need(within(exposed, n) && sized(searched, exposed.size()) && allOf(finite, searched), "the list of exposed automata");
+	need(within(watch, n) && sized(searched, watch.size()) && allOf(finite, searched), "the list of watched automata");
 	need(offsets(adjacentBegin, blocks, adjacent.size()) && within(adjacent, blocks), "the neighbours of blocks");
 	need(within(awake, blocks), "the list of blocks awake");
 	for (size_t k = 1; k < awake.size(); k++) need(awake[k] > awake[k - 1], "the list of blocks awake");

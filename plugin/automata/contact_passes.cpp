@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include "../threads.hpp"
 #include "contacts.hpp"
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <climits>
 
 namespace mca::automata {
 namespace {
@@ -22,16 +25,16 @@ namespace {
 	/// Sums of K quantities over each row, in the order of the row. All in one go: rows are short, and their ends cost more than the sums.
 	template <size_t K> void addRows(const Contacts& C, const std::array<const double*, K>& from, const std::array<double*, K>& to)
 	{
-		const long n = long(C.rows());
-#pragma omp parallel for schedule(static) if (long(C.size()) >= parallelFrom)
-		for (long r = 0; r < n; r++) {
-			double sum[K] = {};
-			for (int32_t c = C.rowBegin[r]; c < C.rowBegin[r + 1]; c++)
+		inParts(long(C.rows()), long(C.size()) >= parallelFrom ? 0 : LONG_MAX, [&](long first, long last) {
+			for (long r = first; r < last; r++) {
+				double sum[K] = {};
+				for (int32_t c = C.rowBegin[r]; c < C.rowBegin[r + 1]; c++)
+					for (size_t k = 0; k < K; k++)
+						sum[k] += from[k][c];
 				for (size_t k = 0; k < K; k++)
-					sum[k] += from[k][c];
-			for (size_t k = 0; k < K; k++)
-				to[k][C.rowOwner[r]] = sum[k];
-		}
+					to[k][C.rowOwner[r]] = sum[k];
+			}
+		});
 	}
 	/// f(rule of contacts as a compile-time constant)
 	template <class F> void withRule(VolumeRule rule, F&& f)
@@ -39,8 +42,10 @@ namespace {
 		dispatch(rule, [&](auto r) { f(std::integral_constant<VolumeRule, ofContacts(r.value)> {}); });
 	}
 
-	// One half-contact each, in functions of their own, with the view private to the thread: a vector or pair declared in the body of a parallel loop, or a
-	// view that is shared, keeps it from being vectorised.
+	/// f(first, last) for parts of all half-contacts. Each loop makes a view of its own: one that is shared keeps it from being vectorised.
+	template <class F> void contactParts(const Contacts& C, F&& f) { inParts(long(C.size()), parallelFrom, f); }
+
+	// One half-contact each, in functions of their own: a vector or pair declared in the body of a loop keeps it from being vectorised.
 
 	template <VolumeRule rule> MCA_INLINE void volumeTermOf(const View& V, const Planes<const double>& x, long c)
 	{
@@ -55,12 +60,13 @@ namespace {
 	}
 	template <VolumeRule rule> void volumeTerms(const Store& S, Contacts& C)
 	{
-		const long    n = long(C.size());
-		const View    V(C);
-		const auto    x = S.position.planes();
-#pragma omp parallel for simd schedule(static) firstprivate(V, x) if (n >= parallelFrom)
-		for (long c = 0; c < n; c++)
-			volumeTermOf<rule>(V, x, c);
+		contactParts(C, [&](long first, long last) {
+			const View V(C);
+			const auto x = S.position.planes();
+#pragma omp simd
+			for (long c = first; c < last; c++)
+				volumeTermOf<rule>(V, x, c);
+		});
 	}
 
 	/// What the trial stresses read of the automata.
@@ -88,14 +94,17 @@ namespace {
 	}
 	template <bool account> double trial(const Store& S, Contacts& C, double dt)
 	{
-		const long   n = long(C.size());
-		const View   V(C);
-		const Movers M(S);
-		double       speed2 = 0;
-#pragma omp parallel for simd schedule(static) reduction(max : speed2) firstprivate(V) if (n >= parallelFrom)
-		for (long c = 0; c < n; c++)
-			speed2 = max(speed2, trialOf<account>(V, M, dt, c));
-		return speed2;
+		std::atomic<double> fastest { 0 };
+		contactParts(C, [&](long first, long last) {
+			const View   V(C);
+			const Movers M(S);
+			double       speed2 = 0;
+#pragma omp simd reduction(max : speed2)
+			for (long c = first; c < last; c++)
+				speed2 = max(speed2, trialOf<account>(V, M, dt, c));
+			for (double now = fastest; now < speed2 && !fastest.compare_exchange_weak(now, speed2);) { }
+		});
+		return fastest;
 	}
 
 	template <bool account> MCA_INLINE void frictionOf(const View& V, const double* J, const double* dTheta, const double* scale, long c)
@@ -113,25 +122,28 @@ namespace {
 	}
 	template <bool account> void friction(const Store& S, Contacts& C, const double* scale)
 	{
-		const long    n = long(C.size());
-		const View    V(C);
-		const double *J = S.J.data(), *dTheta = S.dTheta.data();
-#pragma omp parallel for simd schedule(static) firstprivate(V) if (n >= parallelFrom)
-		for (long c = 0; c < n; c++)
-			frictionOf<account>(V, J, dTheta, scale, c);
+		contactParts(C, [&](long first, long last) {
+			const View    V(C);
+			const double *J = S.J.data(), *dTheta = S.dTheta.data(), *by = scale;
+#pragma omp simd
+			for (long c = first; c < last; c++)
+				frictionOf<account>(V, J, dTheta, by, c);
+		});
 	}
 
 	template <VolumeRule rule> void pressure(const double* h, Contacts& C)
 	{
-		const long n = long(C.size());
-		const View V(C);
-#pragma omp parallel for simd schedule(static) firstprivate(V) if (n >= parallelFrom)
-		for (long c = 0; c < n; c++) {
-			const int32_t r   = V.reverse[c];
-					  const double  inv = 1. / V.r2[c], mine = h[V.owner[c]] * pressureShape<rule>(V.rest[c], inv),
-						       theirs = h[V.other[c]] * pressureShape<rule>(V.rest[r], inv);
-					  V.press[c] = (V.pushing[c] > 0. ? mine : 0.) + (V.pushing[r] > 0. ? theirs : 0.);
-		}
+		contactParts(C, [&](long first, long last) {
+			const View    V(C);
+			const double* share = h;
+#pragma omp simd
+			for (long c = first; c < last; c++) {
+				const int32_t r   = V.reverse[c];
+				const double  inv = 1. / V.r2[c], mine = share[V.owner[c]] * pressureShape<rule>(V.rest[c], inv),
+					     theirs = share[V.other[c]] * pressureShape<rule>(V.rest[r], inv);
+				V.press[c] = (V.pushing[c] > 0. ? mine : 0.) + (V.pushing[r] > 0. ? theirs : 0.);
+			}
+		});
 	}
 
 	/// Planes of n numbers one behind the other.
@@ -156,11 +168,14 @@ namespace {
 	}
 	template <bool account> void forces(Contacts& C, double* t)
 	{
-		const long n = long(C.size());
-		const View V(C);
-#pragma omp parallel for simd schedule(static) firstprivate(V) if (n >= parallelFrom)
-		for (long c = 0; c < n; c++)
-			forceOf<account>(V, t, n, c);
+		contactParts(C, [&](long first, long last) {
+			const View V(C);
+			const long n  = long(C.size());
+			double*    to = t;
+#pragma omp simd
+			for (long c = first; c < last; c++)
+				forceOf<account>(V, to, n, c);
+		});
 	}
 }
 

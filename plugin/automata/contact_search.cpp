@@ -1,62 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include "../threads.hpp"
+#include "cell_grid.hpp"
 #include "contacts.hpp"
 #include <algorithm>
 #include <cmath>
-#include <omp.h>
 
 namespace mca::automata {
 namespace {
-	/// Uniform grid of cells over the exposed automata; a list per cell by counting sort.
-	struct CellGrid {
-		Vec<double>          low {}, high {}; ///< corners of the box that holds all [m]
-		double               inv = 0;         ///< cells per length [1/m]
-		Vec<int>             count {};
-		std::vector<int32_t> begin, item;
-		Vectors              position; ///< in the order of `item`: the cells around an automaton are a few runs of it
-		CellGrid(const Store& S, const std::vector<int32_t>& who, double size)
-		{
-			for (int c = 0; c < dim; c++) {
-				low[c] = 1e300, high[c] = -1e300;
-				for (int32_t i : who)
-					low[c] = std::min(low[c], S.position[c][i]), high[c] = std::max(high[c], S.position[c][i]);
-			}
-			// debris far away must not make the grid larger than the list that it serves
-			const double most  = 8. * double(who.size()) + 1024.;
-			const auto   cells = [&] {
-                                double n = 1;
-                                for (int c = 0; c < dim; c++)
-                                        n *= (high[c] - low[c]) / size + 1;
-                                return n;
-			};
-			while (cells() > most)
-				size *= 1.25;
-			inv        = 1. / size;
-			size_t all = 1;
-			for (int c = 0; c < dim; c++)
-				count[c] = int((high[c] - low[c]) * inv) + 1, all *= size_t(count[c]);
-			begin.assign(all + 1, 0);
-			for (int32_t i : who)
-				begin[cellOf(S, i) + 1]++;
-			for (size_t c = 1; c < begin.size(); c++)
-				begin[c] += begin[c - 1];
-			position.resize(who.size());
-			item.resize(who.size());
-			std::vector<int32_t> at(begin.begin(), begin.end() - 1);
-			for (int32_t i : who) {
-				const int32_t p = at[cellOf(S, i)]++;
-				item[p]         = i, position.set(p, S.position.at(i));
-			}
-		}
-		/// The cell of a place, moved by so many cells, within the grid.
-		Vec<int> cell(Vec<double> x, int by) const
-		{
-			Vec<int> at;
-			for (int c = 0; c < dim; c++)
-				at[c] = std::max(0, std::min(std::max(0, std::min(int((x[c] - low[c]) * inv), count[c] - 1)) + by, count[c] - 1));
-			return at;
-		}
-		size_t cellOf(const Store& S, int32_t i) const { return cellNumber(cell(S.position.at(i), 0), count); }
-	};
 	bool linked(const Store& S, int32_t i, int32_t j)
 	{
 		for (int k = 0; k < nLinks; k++)
@@ -66,6 +16,14 @@ namespace {
 	bool   exposed(const Store& S, int32_t i) { return S.flags[i] & exposedBit; }
 	bool   touching(const Store& S, int32_t i, int32_t j) { return mayTouch(S.flags[i], S.flags[j], S.group[i] == S.group[j]); }
 	double reach2(const Store& S, int32_t i, int32_t j, double skin) { return sqr(S.restDistance(i, j) * (1. + skin)); }
+	Vectors positions(const Store& S, const std::vector<int32_t>& who)
+	{
+		Vectors at;
+		at.resize(who.size());
+		for (size_t q = 0; q < who.size(); q++)
+			at.set(q, S.position.at(who[q]));
+		return at;
+	}
 	/// Calls f(j) for all automata of the grid that are closer to i than (1 + skin) times their rest distance, i included, until it returns true.
 	/// The size of the cells is at least the largest such distance.
 	template <class F> void around(const Store& S, const CellGrid& grid, int32_t i, double skin, F&& f)
@@ -73,44 +31,61 @@ namespace {
 		const Vec<double> x    = S.position.at(i);
 		const auto        at   = grid.position.planes();
 		const double      far2 = 1. / sqr(grid.inv);
-		eachRun(grid.cell(x, -1), grid.cell(x, 1), [&](Vec<int> first, Vec<int> last) {
-			for (int32_t p = grid.begin[cellNumber(first, grid.count)]; p < grid.begin[cellNumber(last, grid.count) + 1]; p++) {
+		grid.eachRunAround(x, [&](size_t first, size_t last) {
+			for (int32_t p = grid.begin[first]; p < grid.begin[last + 1]; p++) {
 				const double r2 = plainSquare(at.at(p) - x);
 				if (r2 < far2 && r2 < reach2(S, i, grid.item[p], skin) && f(grid.item[p])) return true;
 			}
 			return false;
 		});
 	}
-	/// Adds to `who` the interior automata that something foreign is about to reach, in the order of the arrays.
-	void addReached(const Store& S, std::vector<int32_t>& who, double size, double skin, int threads)
+	/// What interior automata of a cell may be reached by: nothing, the exposed of one body (to which it is foreign), or anything.
+	struct Reaching {
+		static constexpr int64_t anything = int64_t(1) << 40, nothing = anything + 1; // groups are 32 bits; nothing is the largest
+		std::vector<int64_t>     by;
+		Reaching(const Store& S, const CellGrid& grid)
+			: by(grid.cells(), nothing)
+		{
+			const auto add = [](int64_t& to, int64_t more) { to = to == more || to == nothing || more == nothing ? std::min(to, more) : anything; };
+			for (size_t c = 0; c < grid.cells(); c++) {
+				int64_t here = nothing;
+				for (int32_t p = grid.begin[c]; p < grid.begin[c + 1]; p++) {
+					const int32_t j = grid.item[p];
+					add(here, linkCount(S.flags[j]) < 3 ? anything : S.group[j]);
+				}
+				if (here == nothing) continue;
+				grid.eachRunAround(grid.position.at(grid.begin[c]), [&](size_t first, size_t last) {
+					for (size_t a = first; a <= last; a++)
+						add(by[a], here);
+					return false;
+				});
+			}
+		}
+		bool may(size_t cell, int32_t group) const { return by[cell] != nothing && by[cell] != group; }
+	};
+	/// Interior automata that something foreign is about to reach, in the order of the arrays.
+	std::vector<int32_t> reached(const Store& S, const CellGrid& grid, double skin, int threads)
 	{
-		const CellGrid                    grid(S, who, size);
+		const Reaching                    reaching(S, grid);
 		std::vector<std::vector<int32_t>> parts(threads);
 		const long                        nb = long(S.blocks.size());
-		Vec<double>                       low, high;
-		for (int c = 0; c < dim; c++)
-			low[c] = grid.low[c] - 1. / grid.inv, high[c] = grid.low[c] + (grid.count[c] + 1) / grid.inv;
-		const auto away = [&](size_t i) {
-			for (int c = 0; c < dim; c++)
-				if (S.position[c][i] < low[c] || S.position[c][i] > high[c]) return true;
-			return false;
-		};
-#pragma omp parallel for schedule(static, 1) num_threads(threads)
-		for (int t = 0; t < threads; t++)
+		eachPart(threads, [&](int t) {
 			for (long b = nb * t / threads; b < nb * (t + 1) / threads; b++)
 				for (int l = 0; l < S.blocks[b].count; l++) {
-					const int32_t i = int32_t(b * blockSize + l);
-					if (exposed(S, i) || away(i)) continue;
+					const int32_t     i = int32_t(b * blockSize + l);
+					const Vec<double> x = S.position.at(i);
+					if (exposed(S, i) || grid.away(x) || !reaching.may(grid.cellOf(x), S.group[i])) continue;
 					around(S, grid, i, skin, [&](int32_t j) {
 						if (!touching(S, j, i)) return false;
 						parts[t].push_back(i);
 						return true;
 					});
 				}
-		const size_t middle = who.size();
+		});
+		std::vector<int32_t> all;
 		for (auto& p : parts)
-			who.insert(who.end(), p.begin(), p.end());
-		std::inplace_merge(who.begin(), who.begin() + middle, who.end());
+			all.insert(all.end(), p.begin(), p.end());
+		return all;
 	}
 	/// stress of a pair before: an old contact, or a link that has just broken
 	void carryOver(const Store& S, const Contacts& old, const std::vector<int32_t>& oldRow, int32_t i, int32_t j, double& s, double& tau, double& rest)
@@ -159,8 +134,7 @@ namespace {
 	{
 		std::vector<RowPart> parts(threads);
 		const long        n = long(who.size());
-#pragma omp parallel for schedule(static, 1) num_threads(threads)
-		for (int t = 0; t < threads; t++) {
+		eachPart(threads, [&](int t) {
 			RowPart&             P = parts[t];
 			std::vector<int32_t> row;
 			for (long q = n * t / threads; q < n * (t + 1) / threads; q++) {
@@ -177,29 +151,45 @@ namespace {
 				P.owner.insert(P.owner.end(), row.size(), i);
 				P.other.insert(P.other.end(), row.begin(), row.end());
 			}
-		}
+		});
 		return parts;
 	}
 }
 
-void searchContacts(Store& S, Contacts& C, double skin, int threads)
+std::vector<int32_t> watched(const Store& S, const std::vector<int32_t>& exposed, double cell)
 {
-	std::vector<int32_t> who;
+	std::vector<int32_t> all = exposed;
+	if (exposed.empty()) return all;
+	const CellGrid grid(positions(S, exposed), exposed, cell);
+	const Reaching reaching(S, grid);
 	for (size_t b = 0; b < S.blocks.size(); b++)
-		for (int l = 0; l < S.blocks[b].count; l++)
-			if (S.flags[b * blockSize + l] & exposedBit) who.push_back(int32_t(b * blockSize + l));
+		for (size_t i = b * blockSize; i < b * blockSize + size_t(S.blocks[b].count); i++) {
+			const Vec<double> x = S.position.at(i);
+			if (!(S.flags[i] & exposedBit) && !grid.away(x) && reaching.may(grid.cellOf(x), S.group[i])) all.push_back(int32_t(i));
+		}
+	std::inplace_merge(all.begin(), all.begin() + long(exposed.size()), all.end());
+	return all;
+}
+
+void searchContacts(Store& S, const std::vector<int32_t>& exposed, Contacts& C, Contacts& old, double skin, int threads)
+{
 	for (auto& b : S.blocks)
 		b.contact = false;
-	Contacts old;
-	std::swap(old, C);
-	C.rowBegin.assign(1, 0);
-	if (who.empty()) return;
+	std::swap(old, C); // arrays keep their memory: with two lists by turns no search allocates
+	C.rowBegin.assign(1, 0), C.rowOwner.clear(), C.owner.clear(), C.other.clear();
+	if (exposed.empty()) return C.eachArray([&](auto& v, Presence) { v.clear(); });
 	double dMax = 0;
 	for (auto& sp : S.species)
 		dMax = std::max(dMax, sp.d);
-	const double cell = dMax * (1. + skin);
-	addReached(S, who, cell, skin, threads);
-	const CellGrid       grid(S, who, cell);
+	const double               cell = dMax * (1. + skin);
+	CellGrid                   grid(positions(S, exposed), exposed, cell);
+	std::vector<int32_t>       who  = exposed;
+	const std::vector<int32_t> more = reached(S, grid, skin, threads);
+	if (more.size()) {
+		who.insert(who.end(), more.begin(), more.end());
+		std::inplace_merge(who.begin(), who.begin() + long(exposed.size()), who.end());
+		grid = CellGrid(positions(S, who), who, cell);
+	}
 	std::vector<int32_t> oldRow;
 	if (old.rows()) {
 		oldRow.assign(S.size(), -1);
@@ -220,14 +210,16 @@ void searchContacts(Store& S, Contacts& C, double skin, int threads)
 	std::vector<int32_t> rowOf(S.size(), -1);
 	for (size_t r = 0; r < C.rows(); r++)
 		rowOf[C.rowOwner[r]] = int32_t(r), S.blocks[C.rowOwner[r] / blockSize].contact = true;
-#pragma omp parallel for schedule(static) num_threads(threads)
-	for (long c = 0; c < long(m); c++) {
-		const int32_t j = C.other[c];
-		for (int32_t q = C.rowBegin[rowOf[j]]; q < C.rowBegin[rowOf[j] + 1]; q++)
-			if (C.other[q] == C.owner[c]) C.reverse[c] = q;
-		constants(S, table, C, c);
-		carryOver(S, old, oldRow, C.owner[c], j, C.s[c], C.tau[c], C.rest[c]);
-	}
+	eachPart(threads, [&](int t) {
+		for (size_t c = m * t / threads; c < m * (t + 1) / threads; c++) {
+			const int32_t j = C.other[c];
+			for (int32_t q = C.rowBegin[rowOf[j]]; q < C.rowBegin[rowOf[j] + 1]; q++)
+				if (C.other[q] == C.owner[c]) C.reverse[c] = q;
+			constants(S, table, C, c);
+			C.s[c] = C.tau[c] = 0.;
+			carryOver(S, old, oldRow, C.owner[c], j, C.s[c], C.tau[c], C.rest[c]);
+		}
+	});
 	contactReciprocals(S, C);
 }
 }

@@ -33,9 +33,12 @@ struct ContactScratch {
 	}
 };
 
-/// New list of contacts from all exposed automata closer than (1 + skin) times their rest distance; stresses of pairs that go on are kept.
+/// The exposed automata, and the interior ones that have something foreign in their cell of this size or in one around it, in the order of the arrays.
+std::vector<int32_t> watched(const Store& S, const std::vector<int32_t>& exposed, double cell);
+/// New list of contacts from all exposed automata (in the order of the arrays) closer than (1 + skin) times their rest distance; stresses of pairs that go on
+/// are kept. `old` becomes the list before.
 /// Deterministic: rows in the order of the arrays, entries of a row in the order of their callers' numbers.
-void searchContacts(Store& S, Contacts& C, double skin, int threads);
+void searchContacts(Store& S, const std::vector<int32_t>& exposed, Contacts& C, Contacts& old, double skin, int threads);
 
 /// Fills perTwoG and perOwnG, which are not part of the saved state.
 void contactReciprocals(const Store& S, Contacts& C);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Who is near whom: which blocks are awake, when contacts are searched.
+#include "cell_grid.hpp"
 #include "parallel.hpp"
 #include <algorithm>
 #include <cmath>
-#include <omp.h>
 
 namespace mca::automata {
 
@@ -34,39 +34,102 @@ void Solver::wake()
 	awake.clear();
 	for (size_t b = 0; b < S.blocks.size(); b++)
 		if (S.blocks[b].awake) awake.push_back(int32_t(b));
-	if (topologyChanged) S.packAll(); // neighbours of blocks that sleep read their records, which then stay as they are
+	if (topologyChanged && awake.size() < S.blocks.size()) S.packAll(); // neighbours of blocks that sleep read their records, which then stay as they are
 	topologyChanged = false;
+}
+
+namespace {
+	/// Displacements that lie in a box, of some automata.
+	struct Box {
+		Vec<double> low = both(1e300), high = both(-1e300);
+		static Vec<double> both(double a)
+		{
+			Vec<double> v;
+			for (int c = 0; c < dim; c++) v[c] = a;
+			return v;
+		}
+		void add(const Box& o)
+		{
+			for (int c = 0; c < dim; c++) low[c] = min(low[c], o.low[c]), high[c] = max(high[c], o.high[c]);
+		}
+		/// Square of the diagonal [m2]: no two of them have moved against each other by more.
+		double diagonal2() const { return plainSquare(high - low); }
+	};
+}
+
+double Solver::largestDiameter() const
+{
+	double most = 0;
+	for (auto& sp : store.species)
+		most = std::max(most, sp.d);
+	return most;
+}
+
+/// Cells of the watched automata where they were searched.
+void Solver::makeNearCells()
+{
+	std::vector<int32_t> places(watch.size());
+	for (size_t q = 0; q < places.size(); q++) places[q] = int32_t(q);
+	const CellGrid       grid(searched, places, nearCell * largestDiameter());
+	std::vector<int32_t> used(grid.cells(), -1);
+	nearCells.of.resize(watch.size()), nearCells.pairs.clear(), nearCells.count = 0;
+	for (size_t c = 0; c < grid.cells(); c++) {
+		if (grid.begin[c] == grid.begin[c + 1]) continue;
+		used[c] = nearCells.count++;
+		for (int32_t p = grid.begin[c]; p < grid.begin[c + 1]; p++) nearCells.of[grid.item[p]] = used[c];
+	}
+	for (size_t c = 0; c < grid.cells(); c++)
+		if (used[c] >= 0)
+			grid.eachRunAround(grid.position.at(grid.begin[c]), [&](size_t first, size_t last) {
+				for (size_t a = first; a <= last; a++)
+					if (used[a] > used[c]) nearCells.pairs.push_back({ used[c], used[a] });
+				return false;
+			});
+}
+
+/// Whether two watched automata may have come nearer to each other since the search by more than `reach` [m], so that a pair that is not listed may touch.
+bool Solver::mayTouch(double reach)
+{
+	const long     n   = long(watch.size());
+	const int32_t* who = watch.data();
+	Box            all;
+	for (int c = 0; c < dim; c++) {
+		const double *x = store.position[c].data(), *x0 = searched[c].data();
+		double        low = 1e300, high = -1e300;
+#pragma omp simd reduction(max : high) reduction(min : low)
+		for (long q = 0; q < n; q++) {
+			const double moved = x[who[q]] - x0[q];
+			low = min(low, moved), high = max(high, moved);
+		}
+		all.low[c] = low, all.high[c] = high;
+	}
+	if (n == 0 || all.diagonal2() <= sqr(reach)) return false;
+	// One fast fragment does not make a new search for all: who was in cells next to each other counts, and for others that they were a cell apart.
+	if (all.diagonal2() > sqr((nearCell - 1.) * largestDiameter())) return true;
+	if (nearCells.of.size() != watch.size()) makeNearCells();
+	std::vector<Box> boxes(size_t(nearCells.count));
+	for (long q = 0; q < n; q++) {
+		const Vec<double> moved = store.position.at(who[q]) - searched.at(q);
+		boxes[nearCells.of[q]].add({ moved, moved });
+	}
+	for (const Box& b : boxes)
+		if (b.diagonal2() > sqr(reach)) return true;
+	for (auto [a, b] : nearCells.pairs) {
+		Box both = boxes[a];
+		both.add(boxes[b]);
+		if (both.diagonal2() > sqr(reach)) return true;
+	}
+	return false;
 }
 
 void Solver::searchIfNeeded()
 {
 	Timer  timer(timing, counters.nsSearch);
-	Store& S = store;
-	bool   due = searchDue;
 	double reach = 1e300; // a pair that is not listed may come nearer by this much before it can touch
-	for (auto& sp : S.species)
+	for (auto& sp : store.species)
 		reach = std::min(reach, options.skin * sp.d);
-	const long    n = long(exposed.size());
-	const int32_t* who = exposed.data();
-	// no two have moved against each other by more than the diagonal of the box that holds all displacements, nor by more than twice the largest
-	double diagonal2 = 0, most = 0;
-	for (int c = 0; c < dim; c++) {
-		const double *x = S.position[c].data(), *x0 = searched[c].data();
-		double        low = 1e300, high = -1e300;
-#pragma omp parallel for simd schedule(static) reduction(max : high) reduction(min : low) if (n > 4096)
-		for (long q = 0; q < n; q++) {
-			const double moved = x[who[q]] - x0[q];
-			low = min(low, moved), high = max(high, moved);
-		}
-		diagonal2 += sqr(high - low);
-	}
-	if (n > 0 && diagonal2 > sqr(reach))
-		for (long q = 0; q < n; q++)
-			most = max(most, plainSquare(S.position.at(who[q]) - searched.at(q)));
-	due |= 4. * most > sqr(reach);
 	// links break in batches, every fourth step: each batch needs a search, and a few steps do not matter to a process that takes hundreds
-	if (!due && counters.steps % breakPeriod == 0) due = breaking();
-	if (due) search();
+	if (searchDue || mayTouch(reach) || (counters.steps % breakPeriod == 0 && breaking())) search();
 }
 
 void Solver::search()
@@ -81,15 +144,17 @@ void Solver::search()
 		scratch.eachArray([&](auto& v, Presence) {
 			if (!v.empty()) v[i] = 0.;
 		});
-	searchContacts(S, contacts, options.skin, std::max(1, omp_get_max_threads()));
-	if (contacts.size()) scratch.resize(S.size(), options.account);
-	settleVolumes();
-	exposed.clear();
+	std::vector<int32_t> exposed;
 	for (size_t i = 0; i < S.size(); i++)
 		if (S.id[i] >= 0 && (S.flags[i] & exposedBit)) exposed.push_back(int32_t(i));
-	searched.resize(exposed.size());
-	for (size_t q = 0; q < exposed.size(); q++)
-		searched.set(q, S.position.at(exposed[q]));
+	searchContacts(S, exposed, contacts, contactsBefore, options.skin, threads());
+	if (contacts.size()) scratch.resize(S.size(), options.account);
+	settleVolumes();
+	watch = watched(S, exposed, nearCell * largestDiameter());
+	searched.resize(watch.size());
+	for (size_t q = 0; q < watch.size(); q++)
+		searched.set(q, S.position.at(watch[q]));
+	nearCells.of.clear();
 	contactAdjacent.clear();
 	if (options.sleeping && awake.size() < S.blocks.size()) {
 		for (size_t c = 0; c < contacts.size(); c++) {

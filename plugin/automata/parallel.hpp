@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Loops over the blocks that are awake, and the clock over the phases of a step.
 #pragma once
+#include "../threads.hpp"
 #include "solver.hpp"
 #include <chrono>
 
@@ -27,10 +28,9 @@ public:
 /// f(block) for each block that is awake, on all threads.
 template <class F> void Solver::eachAwake(F&& f)
 {
-	const long n = long(awake.size());
-	// few blocks are not worth waking a thread for
-#pragma omp parallel for schedule(static) if (n >= 16)
-	for (long q = 0; q < n; q++)
-		f(size_t(awake[q]));
+	inParts(long(awake.size()), 16, [&](long first, long last) { // few blocks are not worth waking a thread for
+		for (long q = first; q < last; q++)
+			f(size_t(awake[q]));
+	});
 }
 }

@@ -20,6 +20,8 @@ struct Options {
 	bool       fullLinks    = false; ///< keep full weight of links and cells at weighted rims (no half bonds)
 };
 
+constexpr double nearCell = 4; ///< size of the cells in which displacements since a search are compared [diameters]
+
 /// One automaton as the caller gives it. Plane strain, per unit thickness, SI units.
 struct Automaton {
 	Vec<double> position {}, velocity {};
@@ -159,6 +161,9 @@ private:
 	void   classify();
 	void   sortInSpace();
 	void   searchIfNeeded();
+	double largestDiameter() const;
+	void   makeNearCells();
+	bool   mayTouch(double reach);
 	void   search();
 	void   wake();
 	void   wakeAround(size_t block);
@@ -170,7 +175,8 @@ private:
 	void   breakLinks();
 	void   settleVolumes();
 	void   filterVolumes();
-	void   shiftVolume(size_t i, double J);
+	void   volumeChanges(size_t block, double lasted);
+	double shiftVolume(size_t i, double J);
 	// computeForces() in its order
 	void  exchangeVolumes();
 	Extra extra();
@@ -219,8 +225,14 @@ private:
 	bool                     flows = false;     ///< some material yields
 	int64_t                  lastSort = 0;
 	std::vector<std::pair<int32_t, double>> unsettled; ///< lost its links in the present search, with the volume that contacts must take over
-	Vectors                                  searched;  ///< positions of exposed automata at the last search
-	std::vector<int32_t>     exposed;
+	Vectors                                  searched;  ///< their positions at the last search
+	std::vector<int32_t>     watch; ///< whose displacements tell when contacts are searched anew, see watched()
+	struct {
+		std::vector<int32_t>                     of;    ///< cell of each watched automaton; made when they are needed
+		std::vector<std::pair<int32_t, int32_t>> pairs; ///< of cells next to each other, once
+		int32_t                                  count = 0;
+	} nearCells; ///< where they were at the last search; follows from `searched`
+	Contacts                 contactsBefore; ///< memory for the next search
 	std::vector<int32_t>     adjacentBegin, adjacent; ///< blocks next to a block by links
 	std::vector<std::pair<int32_t, int32_t>> contactAdjacent;
 	std::vector<int32_t>     awake;

@@ -141,7 +141,7 @@ template <class F> void Solver::archive(F&& to)
 	scratch.eachArray(f);
 	f.each(solverVectorNames, accountForce.volumetric, accountForce.viscous, searched, tiedVelocity, tiedSpin);
 	f.MCA_EACH(
-		place, exposed, adjacentBegin, adjacent, awake, tied, results, options, counters, time, lastDt, lastMove, dtLimit, contactSpeed2,
+		place, watch, adjacentBegin, adjacent, awake, tied, results, options, counters, time, lastDt, lastMove, dtLimit, contactSpeed2,
 		topologyChanged, searchDue, sums);
 	f.MCA_EACH(lastSort, filterTime, flows);
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // One step of a grid, its time step, its energy.
+#include "../threads.hpp"
 #include "grid.hpp"
 #include "sweep.hpp"
 #include <algorithm>
 #include <cmath>
-#include <omp.h>
 
 namespace mca::grid {
 
@@ -90,31 +90,28 @@ void Grid::computeForces(double dt)
 	long awake = 0; // a thread that gets fewer cells than this costs more to wake than it saves
 	for (const auto& b : blocks_)
 		for (const Range& r : b->awake) awake += r.hi - r.lo;
-	const int threads = std::max(1, std::min({ threads_ > 0 ? threads_ : omp_get_max_threads(), int(bands_.size()), int(awake / cellsPerThread) }));
+	const int threads = std::max(1, std::min({ threads_ > 0 ? threads_ : mca::threads(), int(bands_.size()), int(awake / cellsPerThread) }));
 	for (auto& b : blocks_)
 		if (b->limiterX) {
-#pragma omp parallel for schedule(static) num_threads(threads)
-			for (int j = 0; j <= b->nj; j++) edgeLimiterRow(*b, j);
+			eachPart(threads, [&](int t) {
+				for (int j = (b->nj + 1) * t / threads; j < (b->nj + 1) * (t + 1) / threads; j++) edgeLimiterRow(*b, j);
+			});
 		}
 	std::vector<int> first;
 	partition(threads, first);
 	for (auto& b : blocks_) std::fill(b->seamReady.begin(), b->seamReady.end(), 0);
-#pragma omp parallel num_threads(threads) if (threads > 1)
-	{
+	eachPart(threads, [&](int share) {
 		static thread_local Workspace ws;
-		// shares, not threads, are counted: OpenMP may give fewer threads than asked for
-		for (int share = omp_get_thread_num(); share < threads; share += omp_get_num_threads())
-			for (int u = first[size_t(share)]; u < first[size_t(share) + 1]; u++) {
-				Block&    b    = *blocks_[size_t(bands_[size_t(u)].first)];
-				const int band = bands_[size_t(u)].second;
-				sweepBand(b, band, s, ws);
-				// a seam belongs to whoever completes the second of its two bands: no barrier, and its rows are still in the cache
-				for (const int seam : { band - 1, band })
-                                        if (seam >= 0 && size_t(seam) < b.seamReady.size()
-                                            && __atomic_add_fetch(&b.seamReady[size_t(seam)], 1, __ATOMIC_ACQ_REL) == 2)
-                                                finishSeam(b, seam, s, ws);
-			}
-	}
+		for (int u = first[size_t(share)]; u < first[size_t(share) + 1]; u++) {
+			Block&    b    = *blocks_[size_t(bands_[size_t(u)].first)];
+			const int band = bands_[size_t(u)].second;
+			sweepBand(b, band, s, ws);
+			// a seam belongs to whoever completes the second of its two bands: no barrier, and its rows are still in the cache
+			for (const int seam : { band - 1, band })
+				if (seam >= 0 && size_t(seam) < b.seamReady.size() && __atomic_add_fetch(&b.seamReady[size_t(seam)], 1, __ATOMIC_ACQ_REL) == 2)
+					finishSeam(b, seam, s, ws);
+		}
+	});
 	uint64_t worst = 0;
 	for (auto& b : blocks_)
 		for (const uint64_t w : b->bandWorst) worst = std::max(worst, w);

@@ -2,6 +2,7 @@
 #include "McaInfo.hpp"
 #include "isa.hpp"
 #include "roof.hpp"
+#include "threads.hpp"
 
 namespace yade {
 YADE_PLUGIN((McaInfo));

@@ -20,7 +20,11 @@ REBUILD = 'delete the folder build and run pyscripts/setup, or reinstall the pac
 
 
 def setThreadPolicy():
-	"""Threads of OpenMP that wait sleep instead of spinning, unless the user has said otherwise; without effect when YADE was loaded before."""
+	"""Threads of OpenMP that wait sleep instead of spinning, and numpy's products have none, unless the user has said otherwise.
+
+	Without effect on OpenMP when YADE was loaded before, on numpy when that was.
+	"""
+	os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
 	if 'yade' not in sys.modules:
 		if os.environ.setdefault('OMP_WAIT_POLICY', 'passive') == 'passive': os.environ.setdefault('GOMP_SPINCOUNT', '1000')
 

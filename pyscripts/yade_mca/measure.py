@@ -55,10 +55,10 @@ def speedAlong(velocity, direction):
 	given = array('direction', direction, ValueError, ((2, ), (3, )))
 	n = np.zeros(3)
 	n[:len(given)] = given
-	length = math.sqrt(float(n @ n))
+	length = math.sqrt(float((n * n).sum()))
 	if not 0 < length < math.inf or n[velocity.shape[1]:].any():
 		raise ValueError('direction (or normal) must not be zero, and in the plane for velocities in the plane; got %r' % (direction, ))
-	return velocity @ (n[:velocity.shape[1]] / length)
+	return sum(velocity[:, c] * (n[c] / length) for c in range(velocity.shape[1]))  # no product of matrices: its threads would take processors from the solver
 
 
 def rodMeasure(mass, velocity, plasticStrain, impactSpeed, direction=(0., -1.)):
@@ -76,10 +76,10 @@ def rodMeasure(mass, velocity, plasticStrain, impactSpeed, direction=(0., -1.)):
 	impactSpeed = number('impactSpeed', impactSpeed, ValueError, above=0, unit=' m/s')
 	total = m.sum()
 	tail = e < TAIL_STRAIN
-	everything, broken = float(m @ v / total), float(m[e >= BROKEN_STRAIN].sum() / total)
+	everything, broken = float((m * v).sum() / total), float(m[e >= BROKEN_STRAIN].sum() / total)
 	if not m[tail].sum() > 0:
 		return RodMeasure(1., math.nan, 1 - everything / impactSpeed, math.nan, everything, 0., 0., broken)
-	vTail = float(m[tail] @ v[tail] / m[tail].sum())
+	vTail = float((m[tail] * v[tail]).sum() / m[tail].sum())
 	intact = (e < INTACT_STRAIN) & (abs(v - vTail) <= SPEED_BAND * abs(vTail))
 	share = float(m[intact].sum() / total)
 	return RodMeasure(1 - share, 1 - vTail / impactSpeed, 1 - everything / impactSpeed, vTail, everything, float(m[tail].sum() / total), share, broken)

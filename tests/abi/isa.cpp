@@ -13,4 +13,3 @@ TEST(Isa, IsTheHighestLevelOfThisMachine)
 #endif
 	EXPECT_EQ(mca::isa(), expected);
 }
-TEST(Isa, ThereIsAThread) { EXPECT_GE(mca::threads(), 1); }

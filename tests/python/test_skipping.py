@@ -116,7 +116,8 @@ def test_intactBodySearchesOnceAndHasNoContacts(plugin):
 
 
 def test_searchesFollowTheWayOfBodiesAgainstEachOther(plugin):
-	"""A body in free flight needs none after the first; two that part need one whenever an unlisted pair may have come nearer by the search range."""
+	"""A body in free flight needs none after the first; two that slide past each other need one whenever an unlisted pair may have come nearer by the search
+	range, and two that are far apart one every three diameters."""
 	from yade import O
 	from yade_mca import packings
 	for skin in (0.2, 0.4, 0.8):
@@ -127,7 +128,13 @@ def test_searchesFollowTheWayOfBodiesAgainstEachOther(plugin):
 		packings.addBodies(packings.hexagonal(D, packings.Rectangle((-50 * D, 0), (8 * D, 6 * D))), O.materials[0], velocity=(-200., 0.))
 		O.run(1000, True)
 		way = 1000 * O.dt * 600.
-		assert abs(e.counters()['searches'] - way / (skin * D)) < 0.05 * way / (skin * D) + 2
+		assert abs(e.counters()['searches'] - way / (3 * D)) < 0.05 * way / (3 * D) + 2
+		e = bar(8, pulse=400., skin=skin)
+		top = max(b.state.pos[1] for b in O.bodies)
+		packings.addBodies(packings.hexagonal(D, packings.Rectangle((4 * D, top + 5.5 * D), (8 * D, 6 * D))), O.materials[0], velocity=(-200., 0.))
+		O.run(300, True)
+		way = 300 * O.dt * 600.
+		assert way > 4 * D and abs(e.counters()['searches'] - way / (skin * D)) < 0.1 * way / (skin * D) + 2
 
 
 def test_writingBackAndTimingChangeNoBit(plugin):
