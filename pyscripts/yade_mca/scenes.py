@@ -44,15 +44,18 @@ def law2Engines(volumeRule='affine', stepFactor=None, **newton):
 	        make('McaForces'), make('NewtonIntegrator', damping=0, **newton)]
 
 
-def bar(material, length, height, spacing, velocity=(0., 0.), angle=0., engineOptions=None):
+def bar(material, length, height, spacing, velocity=(0., 0.), angle=0., rim='triangles', engineOptions=None):
 	"""A free bar of automata along x, centred at the origin. Part 'bar'.
 
-	material: McaMat, name or record; length, height, spacing [m]; velocity [m/s]; angle of the close-packed rows [rad].
+	material: McaMat, name or record; length, height, spacing [m]; velocity [m/s]; angle of the close-packed rows [rad]; rim: of packings.hexagonal().
+	With 'triangles' free surfaces are of second order, and lengths across rows are whole numbers of rows, along them of spacings; with 'cells' the mass is
+	exactly that of the outline.
 	"""
 	positive(length=length, height=height, spacing=spacing)
 	within('angle', angle, -2 * math.pi, 2 * math.pi, 'rad')
+	oneOf('rim', rim, ('triangles', 'cells', 'full'))
 	affordable(spacing, (length, height))
-	body = hexagonal(spacing, Rectangle((0, 0), (length, height)), angle=angle)
+	body = hexagonal(spacing, Rectangle((0, 0), (length, height)), angle=angle, rim=rim)
 	subsonic('velocity', float(np.abs(array('velocity', velocity, SceneError, ((2, ), (len(body), 2)))).max()), material)
 	s = start(engineOptions)
 	s.add('bar', body, material, velocity=velocity)
@@ -87,7 +90,7 @@ def touchDown(upper, lower, direction=(0., -1.)):
 	return upper.translated(-n * (need[over].max() + 1e-9 * reach))
 
 
-def taylorBar(material, length, diameter, spacing, speed, friction=0., anvil='smooth', engineOptions=None):
+def taylorBar(material, length, diameter, spacing, speed, friction=0., anvil='smooth', rim='triangles', engineOptions=None):
 	"""Taylor test in plane strain: a bar along y meets a rigid anvil at y = 0 with its lower end. Part 'bar', and 'anvil' where it is rough.
 
 	length, diameter, spacing [m]; speed [m/s] towards -y.
@@ -95,9 +98,12 @@ def taylorBar(material, length, diameter, spacing, speed, friction=0., anvil='sm
 	         'rough': a double row of fixed automata of the same material, its upper edge at y = 0: the bar's automata interlock with it, and the foot
 	         stays narrower and the bar longer than on a smooth one, by a few per cent and up to a quarter
 	friction angle [rad] between bar and rough anvil, of the material `material` from now on
+	rim      of packings.hexagonal(): with 'triangles' the free sides are of second order, and lengths across rows are whole numbers of rows, along them
+	         of spacings; with 'cells' the mass is exactly that of the outline. Rows run along x on a smooth anvil, along y on a rough one
 	"""
 	positive(length=length, diameter=diameter, spacing=spacing, speed=speed)
 	oneOf('anvil', anvil, ('smooth', 'rough'))
+	oneOf('rim', rim, ('triangles', 'cells'))
 	within('friction', friction, 0., 1.5, 'rad')
 	if spacing > 0.5 * min(length, diameter):
 		raise SceneError('spacing %g m is above half the length or diameter of the bar (%g, %g m)' % (spacing, length, diameter))
@@ -106,7 +112,10 @@ def taylorBar(material, length, diameter, spacing, speed, friction=0., anvil='sm
 	affordable(spacing, (length, diameter))
 	subsonic('speed', speed, material)
 	outline, rough = Rectangle((0, 0.5 * length), (diameter, length)), anvil == 'rough'
-	body = hexagonal(spacing, outline, **(dict(angle=0.5 * math.pi, origin=(0, 0.5 * spacing)) if rough else dict(origin=(0., 0.))))
+	if rough: place = dict(angle=0.5 * math.pi, origin=None if rim == 'triangles' else (0, 0.5 * spacing))
+	else:  # a row on the anvil; with triangles the ends of rows are a quarter of the spacing inside and outside by turns
+		place = dict(origin=((0.25 - 0.5 * max(round(diameter / spacing), 1)) * spacing if rim == 'triangles' else 0., 0.))
+	body = hexagonal(spacing, outline, rim=rim, **place)
 	s = start(engineOptions)
 	m = packings._material(material)
 	s.facts.update(speed=speed, length=length, diameter=diameter, anvil=anvil)

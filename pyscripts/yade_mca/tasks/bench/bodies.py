@@ -34,7 +34,8 @@ def taylorBar(job):
 	meter.until(TAYLOR['until'])
 	cost, e = meter.record(), s.automata.energies()
 	x, y = s.field('bar', 'x'), s.field('bar', 'y')
-	result = dict(length=(np.ptp(y) + d) / TAYLOR['length'], foot=(np.ptp(x[y < y.min() + 3 * d]) + d) / TAYLOR['diameter'])
+	x0, y0 = s.packings['bar'].positions.T  # outlines run through centres, at whole numbers of rows
+	result = dict(length=np.ptp(y) / np.ptp(y0), foot=np.ptp(x[y < y.min() + 3 * d]) / np.ptp(x0))
 	return dict(cost, built=built, spacing=d, result=result, energyError=abs(e['total'] / e['kineticStart'] - 1) if job['account'] else None)
 
 

@@ -30,7 +30,7 @@ def barOfAutomata(n, material=None, speed=SPEED, end=END):
 	run = scenes.taylorBar(material or soft(), LENGTH, WIDTH, WIDTH / n, speed, engineOptions=dict(account=True))
 	p = run.packings['bar']
 	x0, y0 = abs(p.positions[:, 0]), p.positions[:, 1]
-	rear, side = y0 > y0.max() - 1.2 * p.spacing, x0 > 0.5 * WIDTH - 0.8 * p.spacing
+	rear, side = y0 > y0.max() - 1.2 * p.spacing, x0 > 0.5 * WIDTH - 0.6 * p.spacing  # the ends of rows are a quarter of the spacing outside and inside
 	length = []
 	while omega().time < end:
 		trials.steps(run, 50)
