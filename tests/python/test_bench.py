@@ -181,3 +181,6 @@ def test_programsThatAreNotBuiltAreSaidSo(tmp_path):
 	(tmp_path / 'bench_grid').chmod(0o755)
 	found, remarks = google.run(False, tmp_path)
 	assert found == dict(bench_grid=[dict(name='a', time=2000., ns_per_cell=3.)]) and len(remarks) == 1
+	row, report = dict(name='step<Feature::johnsonCook>/256/1/min_time:0.200/real_time', time=1.), Report('t')
+	google.add(report, dict(bench_grid=[dict(row, ns_per_cell=24.), dict(row, ns_per_cell=26.), dict(name='step<Feature::plastic>/256/1', time=1., ns_per_cell=99.)]))
+	assert [c.passed for c in report.cases] == [True, False, True] and [c.limit for c in report.cases] == [25., 25., None]

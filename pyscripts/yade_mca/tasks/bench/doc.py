@@ -41,9 +41,9 @@ def targets(records):
 	"""What was aimed at and what is reached, plastic material, as sentences."""
 	law, t = [r for r in results.peers(records) if r[1] == 'plastic'], results.TARGETS
 	each = lambda rows, form: ', '.join((form + ' at %d') % (v, n) for v, n in rows) or 'not measured'
-	return ('\nCpmMat over McaEngine on one thread: %s (aim: at least %g). McaEngine on one thread: %s ns (aim: at most %g). Two threads over one: %s (aim: at least %g).\n' % (
+	return ('\nCpmMat over McaEngine on one thread: %s (aim: at least %g). McaEngine on one thread: %s ns (aim: at most %s). Two threads over one: %s (aim: at least %g).\n' % (
 	        each([(r[5], r[0]) for r in law if r[3] == 'CpmMat' and r[2] == 1 and r[5]], '%.1f'), t['peer'],
-	        each([(r[4], r[0]) for r in law if r[3] == 'McaEngine' and r[2] == 1], '%.0f'), t['nanoseconds'],
+	        each([(r[4], r[0]) for r in law if r[3] == 'McaEngine' and r[2] == 1], '%.0f'), ', '.join('%g at %d' % (v, k) for k, v in t['nanoseconds'].items()),
 	        each([(ratio, int(name.split('/N')[1])) for name, ratio, _ in results.speedUps(records) if re.fullmatch(r'law/McaEngine/N\d+', name)], '%.2f'), t['threads']))
 
 
