@@ -51,6 +51,7 @@ ROWS = [
         ('verify-automata', r'impact/[^/]*/(?!library)', 'automata: plate impact, plateau'),
         ('verify-automata', r'impact/[^/]*/library', "automata: the same with the library's hardening and heat, breaking links"),
         ('verify-automata', r'taylor/', 'automata: Taylor bar, against the grid'),
+        ('verify-automata', r'surface/', 'automata: free surfaces: strip, beam, hole, half-plane, ring'),
         ('verify-automata', r'spall/', 'automata: spall, pull-back of the free surface'),
         ('verify-automata', r'roads/', "automata: YADE's loop against the engine, 1000 steps"),
         ('verify-automata', r'[mM]omentum$', 'automata: momenta'),
