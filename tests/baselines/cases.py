@@ -30,7 +30,7 @@ def shock():
 	up, columns = 0.1 * m.bulkSoundSpeed, 120
 	ref = exact.piston(m.density, m.bulkSoundSpeed, m.hugoniotSlope, m.shearModulus, m.yieldStress, up)
 	bar = shocks.drive(m, up, 0., 'affine', columns, 8)
-	speed, front = shocks.fronts(bar, 'bar', ref, up, columns * shocks.D, np.linspace(0.4, 0.75, 6))[1::2]
+	speed, front = shocks.fronts(bar, lambda name: scenes.profile(bar, 'bar', name), ref, up, columns * shocks.D, np.linspace(0.4, 0.75, 6))[1::2]
 	x, P = scenes.profile(bar, 'bar', 'pressure')
 	return dict(speed=speed / ref['D'], pressure=shocks.between(x, P, x[0], front) / ref['P'])
 

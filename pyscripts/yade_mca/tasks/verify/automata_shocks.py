@@ -7,6 +7,7 @@ from scipy.optimize import brentq
 
 from ... import exact, scenes
 from ..._yade import scene as omega
+from ...packings import Rectangle, hexagonal
 from .. import trials
 from ..trials import D, between, crossing, material, order
 from .grid_shocks import PISTONS
@@ -16,12 +17,12 @@ LIMITS = {'along': 0.01, 'across': 0.02}
 RULES = 'affine', 'inversePower', 'meanDistance'
 
 
-def fronts(bar, part, ref, up, length, shares):
-	"""Speeds of precursor and main shock from the positions of both fronts at several times, and the last profile."""
+def fronts(bar, read, ref, up, length, shares):
+	"""Speeds of precursor and main shock from the positions of both fronts at several times, and the last profile. read(name): profiles of x and of a field."""
 	found = []
 	for share in shares:
 		trials.until(bar, share * length / max(ref['precursorD'], ref['D']))
-		x, v = scenes.profile(bar, part, 'vx')
+		x, v = read('vx')
 		t = omega().time - 0.5 * omega().dt  # of the velocities; the positions belong half a step later
 		pre = ref['precursorU'] if ref['waves'] == 'two' else 0.
 		found.append((t, crossing(x, v, 0.5 * pre) if pre else math.nan, crossing(x, v, 0.5 * (up + pre))))
@@ -36,14 +37,19 @@ def drive(mat, up, angle, rule, columns, rows):
 	return bar
 
 
-def shocked(share, angle, rule, columns, rows=16):
-	"""Shock speed, pressure behind it and the exact solution, of a piston at share * c0 in copper with Y = 0.01 K."""
+def piston(share):
+	"""Copper with Y = 0.01 K, the speed of a piston at share * c0, and the exact solution."""
 	m = material('OFHC_Cu', eos='shockAdiabat', yieldModel='perfect')
 	m.yieldStress = 0.01 * m.density * m.bulkSoundSpeed**2
 	up = share * m.bulkSoundSpeed
-	ref = exact.piston(m.density, m.bulkSoundSpeed, m.hugoniotSlope, m.shearModulus, m.yieldStress, up)
+	return m, up, exact.piston(m.density, m.bulkSoundSpeed, m.hugoniotSlope, m.shearModulus, m.yieldStress, up)
+
+
+def shocked(share, angle, rule, columns, rows=16):
+	"""Shock speed, pressure behind it and the exact solution, of piston()."""
+	m, up, ref = piston(share)
 	bar = drive(m, up, angle, rule, columns, rows)
-	_, speed, _, front = fronts(bar, 'bar', ref, up, columns * D, np.linspace(0.4, 0.75, 6))
+	_, speed, _, front = fronts(bar, lambda name: scenes.profile(bar, 'bar', name), ref, up, columns * D, np.linspace(0.4, 0.75, 6))
 	x, P = scenes.profile(bar, 'bar', 'pressure')
 	return speed, between(x, P, x[0], front), ref
 
@@ -66,6 +72,31 @@ def hugoniot(report, want, quick):
 				report.add(name + '/pressure', P, ref['P'], limit=limit, unit='Pa')
 
 
+def hugoniotTurned(report, want, quick):
+	"""The same with rows at 15 degrees to the shock. Such a packing has no lines of symmetry to be held at: the middle of a block so wide that its edges are not felt there."""
+	columns, height, angle = 150, 160, math.radians(15)
+	for share in (0.05, 0.1, 0.2):
+		name = 'hugoniot/affine/15deg/U%.2f' % share
+		if not want(name) or quick: continue
+		m, up, ref = piston(share)
+		s = trials.automata(contacts=False)
+		p = hexagonal(D, Rectangle((0.5 * columns * D, 0.), (columns * D, height * D)), angle=angle, rim='triangles')
+		ids, (x, y) = s.add('bar', p, m), p.positions.T
+		s.block(ids[abs(y) > abs(y).max() - 2.6 * D], 'yZ')
+		pushed = ids[x < x.min() + 2.2 * D]
+		s.block(pushed, 'xyZ')
+		for i in pushed.tolist():
+			omega().bodies[i].state.vel = (up, 0., 0.)
+		middle = abs(y) < 12 * D
+		column = np.floor((x[middle] - x[middle].min()) / D).astype(int)
+		mean = lambda f: np.bincount(column, f[middle]) / np.bincount(column)
+		read = lambda *names: [mean(f) for f in (s.fields('bar', ('x', *names))[n] for n in ('x', *names))]
+		_, speed, _, front = fronts(s, read, ref, up, columns * D, np.linspace(0.4, 0.75, 6))
+		x, P = read('pressure')
+		report.add(name + '/speed', speed, ref['D'], limit=0.01, unit='m/s')
+		report.add(name + '/pressure', between(x, P, x[0], front), ref['P'], limit=0.01, unit='Pa')
+
+
 def hugoniotLength(report, want, quick):
 	"""The measured speed against the length of the bar: what a bar of 250 columns is off in a weak shock is the time that the front needs to form."""
 	if not want('hugoniotLength'): return
@@ -86,7 +117,7 @@ def precursor(report, want, quick):
 		ref = exact.piston(m.density, m.bulkSoundSpeed, m.hugoniotSlope, m.shearModulus, m.yieldStress, up, gruneisen=m.gruneisen)
 		columns = 500
 		bar = drive(m, up, 0., 'affine', columns, 10)
-		pre, speed, elastic, plastic = fronts(bar, 'bar', ref, up, columns * D, np.linspace(0.5, 0.9, 6))
+		pre, speed, elastic, plastic = fronts(bar, lambda name: scenes.profile(bar, 'bar', name), ref, up, columns * D, np.linspace(0.5, 0.9, 6))
 		x, P, v, q = scenes.profile(bar, 'bar', 'pressure', 'vx', 'equivalentStress')
 		sigma = P + 2 / 3 * q  # axial stress of uniaxial strain
 		add = lambda what, value, reference, unit, limit=0.02: report.add(name + '/' + what, value, reference, limit=limit, unit=unit)
@@ -154,4 +185,4 @@ def plates(report, name, flyer, target, speed, changes, limit):
 	add('contact/deviator', 0.5 * (q[:12] / m[1].yieldStress + qf[::-1][:12] / m[0].yieldStress).min(), 1., 'Y, least of columns 1 to 12', None)
 
 
-CASES = [hugoniot, hugoniotLength, precursor, impact]
+CASES = [hugoniot, hugoniotTurned, hugoniotLength, precursor, impact]
