@@ -124,6 +124,7 @@ namespace {
 
 void forcePass(Store& S, size_t b, VolumeRule rule, const Extra& E)
 {
+	prefetchLinks(S, b);
 	const BlockView V(S, b);
 	dispatch(rule, [&](auto r) {
 		choices([&](auto intact, auto mixed, auto viscous,

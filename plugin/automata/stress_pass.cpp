@@ -214,6 +214,7 @@ namespace {
 
 void stressPass(Store& S, size_t b, VolumeRule rule, double dt, const Extra& X, BlockResult& out, BlockWork* work)
 {
+	prefetchLinks(S, b);
 	const BlockView V(S, b);
 	const bool      affine = rule == VolumeRule::affine;
 	if (!(dt > 0.)) return affine ? meanPressures(V, work != nullptr) : void(std::copy(V.P, V.P + blockSize, V.mean));

@@ -35,6 +35,27 @@ struct BlockView {
 	Pair<v8> stress(int k, int g) const { return { load(s + k * blockSize + g), load(tau + k * blockSize + g) }; }
 };
 
+/// Number of automata from which on their arrays are beyond the caches: a pass then asks for those of the next block while it computes this one.
+/// Neighbours are in the same block or in those before and behind it, so their records are there when they are gathered.
+constexpr size_t prefetchFrom = 40000;
+template <class T> MCA_INLINE void prefetch(const std::vector<T>& v, size_t block, size_t each)
+{
+	const char* p = reinterpret_cast<const char*>(v.data() + block * blockSize * each);
+	for (size_t q = 0; q < blockSize * each * sizeof(T); q += 64) __builtin_prefetch(p + q, 0, 2);
+}
+/// What pass 1 gathers.
+MCA_INLINE void prefetchRecords(const Store& S, size_t b)
+{
+	if (S.size() < prefetchFrom || b + 1 >= S.blocks.size()) return;
+	prefetch(S.node, b + 1, nodeSize), prefetch(S.neighbour, b + 1, nLinks);
+}
+/// What passes 2 and 3 read.
+MCA_INLINE void prefetchLinks(const Store& S, size_t b)
+{
+	if (S.size() < prefetchFrom || b + 1 >= S.blocks.size()) return;
+	prefetchRecords(S, b), prefetch(S.push, b + 1, pushSize), prefetch(S.s, b + 1, nLinks), prefetch(S.tau, b + 1, nLinks);
+}
+
 /// Positions of neighbours.
 MCA_INLINE Vec<v8> gatherPosition(const double* node, const int32_t* at)
 {

@@ -165,6 +165,7 @@ namespace {
 
 void volumePass(Store& S, size_t b, VolumeRule rule, const Extra& X, bool init, BlockResult& out)
 {
+	prefetchRecords(S, b);
 	const BlockView V(S, b);
 	const double*   contactSum = V.block.contact && X.contactSum ? X.contactSum + V.base : nullptr;
 	dispatch(V.material.eos.kind, [&](auto law) {
