@@ -163,9 +163,10 @@ std::vector<int32_t> watched(const Store& S, const std::vector<int32_t>& exposed
 	const CellGrid grid(positions(S, exposed), exposed, cell);
 	const Reaching reaching(S, grid);
 	for (size_t b = 0; b < S.blocks.size(); b++)
-		for (size_t i = b * blockSize; i < b * blockSize + size_t(S.blocks[b].count); i++) {
+		for (int l = 0; l < S.blocks[b].count; l++) {
+			const int32_t     i = int32_t(b * blockSize) + l;
 			const Vec<double> x = S.position.at(i);
-			if (!(S.flags[i] & exposedBit) && !grid.away(x) && reaching.may(grid.cellOf(x), S.group[i])) all.push_back(int32_t(i));
+			if (!(S.flags[i] & exposedBit) && !grid.away(x) && reaching.may(grid.cellOf(x), S.group[i])) all.push_back(i);
 		}
 	std::inplace_merge(all.begin(), all.begin() + long(exposed.size()), all.end());
 	return all;
@@ -178,10 +179,7 @@ void searchContacts(Store& S, const std::vector<int32_t>& exposed, Contacts& C, 
 	std::swap(old, C); // arrays keep their memory: with two lists by turns no search allocates
 	C.rowBegin.assign(1, 0), C.rowOwner.clear(), C.owner.clear(), C.other.clear();
 	if (exposed.empty()) return C.eachArray([&](auto& v, Presence) { v.clear(); });
-	double dMax = 0;
-	for (auto& sp : S.species)
-		dMax = std::max(dMax, sp.d);
-	const double               cell = dMax * (1. + skin);
+	const double               cell = S.largestDiameter() * (1. + skin);
 	CellGrid                   grid(positions(S, exposed), exposed, cell);
 	std::vector<int32_t>       who  = exposed;
 	const std::vector<int32_t> more = reached(S, grid, skin, threads);

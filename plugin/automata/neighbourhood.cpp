@@ -57,20 +57,12 @@ namespace {
 	};
 }
 
-double Solver::largestDiameter() const
-{
-	double most = 0;
-	for (auto& sp : store.species)
-		most = std::max(most, sp.d);
-	return most;
-}
-
 /// Cells of the watched automata where they were searched.
 void Solver::makeNearCells()
 {
 	std::vector<int32_t> places(watch.size());
 	for (size_t q = 0; q < places.size(); q++) places[q] = int32_t(q);
-	const CellGrid       grid(searched, places, nearCell * largestDiameter());
+	const CellGrid       grid(searched, places, nearCell * store.largestDiameter());
 	std::vector<int32_t> used(grid.cells(), -1);
 	nearCells.of.resize(watch.size()), nearCells.pairs.clear(), nearCells.count = 0;
 	for (size_t c = 0; c < grid.cells(); c++) {
@@ -105,7 +97,7 @@ bool Solver::mayTouch(double reach)
 	}
 	if (n == 0 || all.diagonal2() <= sqr(reach)) return false;
 	// One fast fragment does not make a new search for all: who was in cells next to each other counts, and for others that they were a cell apart.
-	if (all.diagonal2() > sqr((nearCell - 1.) * largestDiameter())) return true;
+	if (all.diagonal2() > sqr((nearCell - 1.) * store.largestDiameter())) return true;
 	if (nearCells.of.size() != watch.size()) makeNearCells();
 	std::vector<Box> boxes(size_t(nearCells.count));
 	for (long q = 0; q < n; q++) {
@@ -150,7 +142,7 @@ void Solver::search()
 	searchContacts(S, exposed, contacts, contactsBefore, options.skin, threads());
 	if (contacts.size()) scratch.resize(S.size(), options.account);
 	settleVolumes();
-	watch = watched(S, exposed, nearCell * largestDiameter());
+	watch = watched(S, exposed, nearCell * S.largestDiameter());
 	searched.resize(watch.size());
 	for (size_t q = 0; q < watch.size(); q++)
 		searched.set(q, S.position.at(watch[q]));

@@ -161,7 +161,6 @@ private:
 	void   classify();
 	void   sortInSpace();
 	void   searchIfNeeded();
-	double largestDiameter() const;
 	void   makeNearCells();
 	bool   mayTouch(double reach);
 	void   search();

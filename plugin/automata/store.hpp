@@ -74,6 +74,12 @@ struct Store {
 
 	size_t  size() const { return id.size(); }
 	int32_t speciesOf(size_t i) const { return blocks[i / blockSize].species; }
+	double  largestDiameter() const ///< [m]
+	{
+		double most = 0;
+		for (const Species& sp : species) most = std::max(most, sp.d);
+		return most;
+	}
 	/// of the pair of this species with automaton j [Pa]; q = arm of this side / distance
 	double pairTwoG(int32_t mine, size_t j, double q) const
 	{

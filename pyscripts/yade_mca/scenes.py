@@ -48,8 +48,8 @@ def bar(material, length, height, spacing, velocity=(0., 0.), angle=0., rim='tri
 	"""A free bar of automata along x, centred at the origin. Part 'bar'.
 
 	material: McaMat, name or record; length, height, spacing [m]; velocity [m/s]; angle of the close-packed rows [rad]; rim: of packings.hexagonal().
-	With 'triangles' free surfaces are of second order, and lengths across rows are whole numbers of rows, along them of spacings; with 'cells' the mass is
-	exactly that of the outline.
+	With 'triangles' free surfaces are of second order, and lengths across rows are whole numbers of rows, along them of spacings: s.packings['bar'].area is
+	the area that was made [m2], .outlineArea that asked for. With 'cells' the mass is exactly that of the outline.
 	"""
 	positive(length=length, height=height, spacing=spacing)
 	within('angle', angle, -2 * math.pi, 2 * math.pi, 'rad')
@@ -99,7 +99,8 @@ def taylorBar(material, length, diameter, spacing, speed, friction=0., anvil='sm
 	         stays narrower and the bar longer than on a smooth one, by a few per cent and up to a quarter
 	friction angle [rad] between bar and rough anvil, of the material `material` from now on
 	rim      of packings.hexagonal(): with 'triangles' the free sides are of second order, and lengths across rows are whole numbers of rows, along them
-	         of spacings; with 'cells' the mass is exactly that of the outline. Rows run along x on a smooth anvil, along y on a rough one
+	         of spacings (s.packings['bar'].area is the area that was made [m2], .outlineArea that asked for); with 'cells' the mass is exactly that of
+	         the outline. Rows run along x on a smooth anvil, along y on a rough one
 	"""
 	positive(length=length, diameter=diameter, spacing=spacing, speed=speed)
 	oneOf('anvil', anvil, ('smooth', 'rough'))

@@ -256,6 +256,8 @@ NAN, INF = float('nan'), float('inf')
         (lambda: scenes.taylorBar('4340', 12e-3, 4e-3, 1e-3, 100., friction=NAN, anvil='rough'), 'friction must be from'),
         (lambda: scenes.taylorBar('4340', 12e-3, 4e-3, 1e-3, 100., friction=0.1), "take anvil='rough'"),
         (lambda: scenes.taylorBar('4340', 12e-3, 4e-3, 1e-3, 100., anvil='soft'), 'smooth, rough'),
+        (lambda: scenes.taylorBar('4340', 12e-3, 4e-3, 1e-3, 100., rim='full'), 'triangles, cells'),
+        (lambda: scenes.bar('4340', 2e-2, 5e-3, 1e-3, rim='round'), 'triangles, cells, full'),
         (lambda: scenes.taylorBar('4340', 12e-3, 4e-3, 3e-3, 100.), 'above half the length or diameter'),
         (lambda: scenes.tiedPlate('4340', 8e-3, 1e-3, growth=NAN), 'growth must be from 1'),
         (lambda: scenes.tiedPlate('4340', 8e-3, 1e-3, largest=0.5), 'largest must be from 1'),

@@ -44,7 +44,7 @@ struct JohnsonCook : FlowLaw {
 	}
 
 	/// Plastic strain d of the step above the static yield stress s: trial - 3G d = Y(eps_p + d, d/dt) by a step of Newton's and one of Halley's
-	/// from a close start; the residual is below 1e-11 Y for C = 0.014, 1e-7 Y for 0.06, 1e-4 Y for 0.3. In single precision where a later step
+	/// from a close start; the residual is below 1e-10 Y for C = 0.014, 1e-7 Y for 0.06, 2e-4 Y for 0.3. In single precision where a later step
 	/// makes good what it leaves: divisions are most of the cost.
 	template <class Y> static MCA_INLINE double increment(const Y& y, const StaticYield& s, double trial, double threeG, double dt, double, double)
 	{
