@@ -189,6 +189,16 @@ def drawPareto(ax, cost, error, labels, groups=None, colours=None, hollow=None):
 	return front
 
 
+def drawOldPareto(ax, cost, error):
+	"""Adds the front of an older result to axes that drawPareto() made, which grow to hold it: points and a dashed line in grey. cost, error (n,)."""
+	cost, error = np.asarray(cost, float), np.asarray(error, float)
+	front = paretoFront(cost, error)
+	if not len(front): return
+	ax.loglog(cost[front], error[front], 's--', ms=3, lw=0.8, color='0.65', zorder=0, label='front before')
+	for v, (low, high), limit in ((cost[front], ax.get_xlim(), ax.set_xlim), (error[front], ax.get_ylim(), ax.set_ylim)):
+		limit(min(low, 10**math.floor(math.log10(v.min()))), max(high, 10**math.ceil(math.log10(v.max()))))
+
+
 def pareto(path, cost, error, labels, groups=None, xlabel='time [s]', ylabel='error', title=''):
 	"""Time against error, log-log, with the Pareto front marked. cost, error (n,); labels n names; groups n names for colours or None."""
 	with plt.rc_context(STYLE):

@@ -26,6 +26,8 @@ RECORD = {
         (['bench', '--out', '/proc/self/x'], 'cannot make'),
         (['bench', '--json', '/no/such/folder/x.json'], 'does not exist'),
         (['bench', '--doc', '/no/such/folder'], 'no file'),
+        (['bench', '--before', '/no/such/bench.json'], 'give --out'),
+        (['bench', '--out', '.', '--before', '/no/such/bench.json'], 'is no bench.json'),
         (['bench', '--threads', '2'], 'of each run itself'),
 ])
 def test_wrongOptionsEndInOneLineAndStatus2(capsys, argv, word):
@@ -164,6 +166,14 @@ def test_aFolderKeepsTheCasesThatAreNotRunAgain(tmp_path, monkeypatch):
 	out = ['--quick', '--out', str(tmp_path), '--json', str(tmp_path / 'x.json')]
 	assert cli.main(['bench', *out]) == 0 and cli.main(['bench', *out, '--only', 'plasticShock']) == 0
 	assert [r['case'] for r in json.loads((tmp_path / 'bench.json').read_text())['records']] == ['elasticWave', 'plasticShock']
+	old = tmp_path / 'old.json'
+	old.write_text(json.dumps(dict(records=[made('elasticWave', 'grid', 3, 7., error=.25)])))
+	assert cli.main(['bench', *out, '--before', str(old)]) == 0 and cli.main(['bench', *out, '--only', 'elasticWave']) == 0
+	kept = json.loads((tmp_path / 'bench.json').read_text())['before']  # once given, it stays
+	assert [(r['name'], r['stepping'], 'phases' in r) for r in kept] == [('elasticWave/grid/N3', 7., False)]
+	assert cli.main(['bench', '--doc', str(tmp_path)]) == 0
+	table = (tmp_path / 'bench-front.inc').read_text()
+	assert 'time before [s]' in table and '- 7.000' in table and '- 0.25' in table
 	assert len((tmp_path / 'bench.jsonl').read_text().splitlines()) == 2 and all(json.loads(x) for x in (tmp_path / 'bench.jsonl').read_text().splitlines())
 	assert bench.line(dict(name='a', ended='because')).endswith('because')
 

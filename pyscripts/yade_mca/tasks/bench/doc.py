@@ -47,17 +47,20 @@ def targets(records):
 	        each([(ratio, int(name.split('/N')[1])) for name, ratio, _ in results.speedUps(records) if re.fullmatch(r'law/McaEngine/N\d+', name)], '%.2f'), t['threads']))
 
 
-def fronts(records):
-	"""The runs on the front of each case and the default ones."""
+def fronts(records, before=()):
+	"""The runs on the front of each case and the default ones, beside the same runs of an older result."""
 	from ...plots import paretoFront
 	from .plots import panels
-	rows = []
+	rows, old = [], {r['name']: r for r in before}
 	for title, some in panels(records):
 		front = set(paretoFront([r['stepping'] for r in some], [r['error'] for r in some]))
 		for i, r in sorted(enumerate(some), key=lambda x: x[1]['stepping']):
 			if i in front or not variants(r):
-				rows.append((title, r['solver'], '%d' % r['n'], ', '.join(variants(r)), number(r['stepping'], 3), '%.2g' % r['error'], '%.1g' % r['energyError'] if r.get('energyError') is not None else '', 'x' if i in front else ''))
-	return listTable('Time against error', ('case', 'solver', 'N', 'option', 'time of the steps [s]', 'error', 'energy', 'on the front'), rows) + madeBy(records)
+				o = old.get(r['name'], {})
+				rows.append((title, r['solver'], '%d' % r['n'], ', '.join(variants(r)), number(r['stepping'], 3), '%.2g' % r['error'], '%.1g' % r['energyError'] if r.get('energyError') is not None else '', 'x' if i in front else '',
+				             *((number(o.get('stepping'), 3), '%.2g' % o['error'] if o.get('error') else '') if before else ())))
+	head = ('case', 'solver', 'N', 'option', 'time of the steps [s]', 'error', 'energy', 'on the front', *(('time before [s]', 'error before') if before else ()))
+	return listTable('Time against error', head, rows) + madeBy(records) + madeBy(before).replace('Made', 'Those before made')
 
 
 def options(records):
@@ -114,7 +117,7 @@ def write(folder):
 	with open(os.path.join(folder, 'bench.json')) as f:
 		data = json.load(f)
 	records, made = data['records'], []
-	tables = dict(cases=lambda r: what(), law=law, front=fronts, options=options, phases=phases, equal=equal, kernels=lambda r: kernels(data))
+	tables = dict(cases=lambda r: what(), law=law, front=lambda r: fronts(r, data.get('before', ())), options=options, phases=phases, equal=equal, kernels=lambda r: kernels(data))
 	for name, make in tables.items():
 		made.append('bench-%s.inc' % name)
 		writeAtomically(os.path.join(folder, made[-1]), make(records))

@@ -16,7 +16,7 @@ def short(r):
 
 
 def panels(records):
-	"""(title, records with time and error) of each panel: one per case, plates with a wave by width."""
+	"""(title, records with time and error) of each panel: one per case, plates with a wave by width. The titles tell the panels apart."""
 	found = []
 	for case, title in TITLES.items():
 		of = [r for r in records if r['case'] == case and r.get('error') and r.get('stepping')]
@@ -26,9 +26,12 @@ def panels(records):
 	return found
 
 
-def front(path, records):
-	"""Run time against error of every run, one panel per case, log-log, with the Pareto front; runs with an option changed are hollow."""
-	plt, found = plots.plt, panels(records)
+def front(path, records, before=()):
+	"""Run time against error of every run, one panel per case, log-log, with the Pareto front; runs with an option changed are hollow.
+
+	before: records of an older result, whose fronts stand beside in grey.
+	"""
+	plt, found, old = plots.plt, panels(records), dict(panels(before))
 	columns = min(4, max(1, len(found)))
 	rows = -(-len(found) // columns) or 1
 	with plt.rc_context(plots.STYLE):
@@ -37,6 +40,7 @@ def front(path, records):
 			ax.axis('off')
 		for ax, (title, some) in zip(axes.flat, found):
 			plots.drawPareto(ax, [r['stepping'] for r in some], [r['error'] for r in some], [short(r) for r in some], [r['solver'] for r in some], COLOURS, [bool(variants(r)) for r in some])
+			plots.drawOldPareto(ax, [r['stepping'] for r in old.get(title, ())], [r['error'] for r in old.get(title, ())])
 			ax.set(title=title, xlabel='time of the steps [s]')
 			ax.legend(fontsize=6)
 		for ax in axes[:, 0]:
@@ -45,7 +49,7 @@ def front(path, records):
 		return plots.save(figure, path)
 
 
-def size(path, records):
+def size(path, records, before=()):
 	"""Left: ns per automaton (cell) and step against their number. Right: time per simulated microsecond against size."""
 	plt = plots.plt
 	with plt.rc_context(plots.STYLE):
@@ -78,7 +82,7 @@ def shown(records):
 	return list(found.values())
 
 
-def phases(path, records):
+def phases(path, records, before=()):
 	"""Stacked bars: ns per step over automata and cells, by phase."""
 	plt, some = plots.plt, shown(records)
 	with plt.rc_context(plots.STYLE):
@@ -95,5 +99,5 @@ def phases(path, records):
 		return plots.save(figure, path)
 
 
-#: name -> function(path, records) that draws it
+#: name -> function(path, records, records of an older result) that draws it
 PICTURES = {'bench-front.png': front, 'bench-size.png': size, 'bench-phases.png': phases}

@@ -5,7 +5,7 @@
     bench.json         the whole result; a case that is run again with --only replaces its old records there
     bench-front.png    time against error with the Pareto front; bench-size.png, bench-phases.png
 
-A record holds the job (case, solver, n, rule, factor, sleeping, account, threads, kind, width, until) and
+With `--before FILE` the fronts of an older bench.json stand beside in grey, and its times and errors in the table; DIR/bench.json keeps them. A record holds the job (case, solver, n, rule, factor, sleeping, account, threads, kind, width, until) and
 
     stepping           time of all steps [s]: `timers` (YADE's, of its engines) or, on 1 thread, `processorSeconds` when that is less because other processes ran
     wall               [s] from the start of the process to the end of the run; start: of YADE and the plugin; built: of the scene
@@ -33,6 +33,7 @@ def addArguments(parser):
 	parser.add_argument('--quick', action='store_true', help='fewer and coarser runs, two to three minutes')
 	parser.add_argument('--only', metavar='CASE', action='append', help='of %s; may be given several times' % ', '.join((*plan.CASES, KERNELS)))
 	parser.add_argument('--fastest', action='store_true', help='keep the runs that are in DIR/bench.json and, of runs made again with the same libraries, the faster one: for machines that others use')
+	parser.add_argument('--before', metavar='FILE', help='a bench.json of another version: its fronts are shown beside the new ones')
 	parser.add_argument('--doc', metavar='DIR', help='only make the tables of the documentation from DIR/bench.json')
 
 
@@ -42,6 +43,9 @@ def check(args):
 			raise UsageError("--only: case '%s' is not one of %s" % (case, ', '.join((*plan.CASES, KERNELS))))
 	if args.threads:
 		raise UsageError('--threads: bench sets the number of threads of each run itself')
+	if args.before:
+		if not args.out: raise UsageError('--before: give --out, where the pictures go')
+		older(args.before)
 	if args.doc and not os.path.isfile(os.path.join(args.doc, 'bench.json')):
 		raise UsageError("--doc: there is no file '%s'" % os.path.join(args.doc, 'bench.json'))
 
@@ -55,15 +59,26 @@ def line(r):
 	        r['name'], r['stepping'], r['automata'], r['cells'], r['steps'], show(r.get('error'), '%.2g'), show(r['automataNs'], '%.0f'), show(r['cellNs'], '%.0f'), r['memory'])
 
 
+def older(path):
+	"""The records of a bench.json without what only the run itself needs."""
+	try:
+		with open(path) as f:
+			records = json.load(f)['records']
+	except (OSError, ValueError, KeyError, TypeError) as e:
+		raise UsageError("--before: '%s' is no bench.json: %s" % (path, e))
+	return [{k: v for k, v in r.items() if k not in ('phases', 'phasesPerStep', 'signal')} for r in records]
+
+
 def kept(path, only, everything=False):
-	"""(records, kernels) of an older result that this run does not renew."""
+	"""(records, kernels, records before) of an older result that this run does not renew."""
 	if not os.path.isfile(path) or not (only or everything):
-		return [], {}
+		return [], {}, []
 	with open(path) as f:
 		old = json.load(f)
+	before = old.get('before', [])
 	if everything:
-		return old['records'], old.get('kernels', {})
-	return [r for r in old.get('records', ()) if r['case'] not in only], {} if KERNELS in only else old.get('kernels', {})
+		return old['records'], old.get('kernels', {}), before
+	return [r for r in old.get('records', ()) if r['case'] not in only], {} if KERNELS in only else old.get('kernels', {}), before
 
 
 def fastest(old, new):
@@ -82,7 +97,8 @@ def run(args, report, progress):
 		return
 	jobs = plan.plan(args.quick, args.only, environment.cores())
 	path = args.out and os.path.join(args.out, 'bench.json')
-	old, kernels = kept(path, args.only, args.fastest) if path else ([], {})
+	old, kernels, before = kept(path, args.only, args.fastest) if path else ([], {}, [])
+	if args.before: before = older(args.before)
 	records, attempt = [], Attempts('bench')
 	with progress(len(jobs), 'bench', 'run') as bar:
 		for j in jobs:
@@ -103,7 +119,7 @@ def run(args, report, progress):
 	results.add(report, records)
 	report.extra.update(command=command(args), records=fastest(old, records), kernels=kernels, remarks=remarks)
 	if args.out:
-		made = written(args, fastest(old, records), kernels, remarks, attempt)
+		made = written(args, fastest(old, records), kernels, remarks, before, attempt)
 		print('%s are in %s' % (', '.join(made) or 'no files', os.path.abspath(args.out)))
 		attempt.finish()
 
@@ -114,18 +130,19 @@ def append(folder, records):
 		f.write(json.dumps(jsonable({k: v for k, v in records[-1].items() if k != 'signal'})) + '\n')
 
 
-def written(args, records, kernels, remarks, attempt):
+def written(args, records, kernels, remarks, before, attempt):
 	"""Writes records, result and pictures of all cases that are in the folder now; returns the names of the files."""
 	from . import plots
 	records, whole = jsonable(records), Report('bench')
 	results.add(whole, records)
 	google.add(whole, kernels)
+	if before: whole.extra.update(before=before)
 	whole.extra.update(command=command(args), records=records, kernels=kernels, remarks=remarks, wall=sum(r.get('wall') or 0. for r in records))
 	lines = ''.join(json.dumps(r) + '\n' for r in records)
 	files = {'bench.json': whole.write, 'bench.jsonl': lambda path: writeAtomically(path, lines)}
-	files.update({name: lambda path, make=make: make(path, records) for name, make in plots.PICTURES.items()})
+	files.update({name: lambda path, make=make: make(path, records, before) for name, make in plots.PICTURES.items()})
 	return [name for name, make in files.items() if attempt(path := os.path.join(args.out, name), make, path)]
 
 
 def command(args):
-	return ' '.join(['pyscripts/run bench', *['--quick'] * args.quick, *('--only ' + c for c in args.only or ())])
+	return ' '.join(['pyscripts/run bench', *['--quick'] * args.quick, *('--only ' + c for c in args.only or ()), *['--before'] * bool(args.before)])
