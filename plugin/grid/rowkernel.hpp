@@ -72,42 +72,83 @@ __attribute__((flatten)) uint64_t cellLoop(const Block& b, int j, int lo, int hi
 }
 
 constexpr int segment = 16; ///< cells that are tried together without flow
+constexpr int segments = 16; ///< of them whose yield stresses are computed together: one alone would cost as much
+
+/// Equivalent stresses of segments before the step, squared, and static yield stresses below which none of their cells yields [Pa2], [Pa].
+struct Segments {
+	alignas(64) double before2[segments], least[segments];
+};
+/// Cells [lo, hi) of row j, at most segments * segment.
+template <YieldKind kind> Segments lookAt(const Block& b, int j, int lo, int hi, const Yield& yield)
+{
+	constexpr bool     heats = LawOf<kind>::heats;
+	Segments           found;
+	alignas(64) double strain[segments], hottest[segments];
+	std::fill(strain, strain + segments, 0.), std::fill(hottest, hottest + segments, 0.);
+	for (int q = 0, from = lo; from < hi; q++, from += segment) {
+		const int     n  = std::min(segment, hi - from);
+		const size_t  at = b.cell(from, j);
+		double        before2 = 0, hot = 0, least = 1e300;
+		const double *sxx = b.sxx + at, *syy = b.syy + at, *sxy = b.sxy + at, *temperature = heats ? b.temperature + at : nullptr, *eqps = b.eqps + at;
+#pragma omp simd reduction(max : before2, hot) reduction(min : least)
+		for (int i = 0; i < n; i++) {
+			before2 = max(before2, 3. * (sxx[i] * sxx[i] + syy[i] * syy[i] + sxx[i] * syy[i] + sxy[i] * sxy[i]));
+			least   = min(least, eqps[i]);
+			if constexpr (heats) hot = max(hot, temperature[i]);
+		}
+		found.before2[q] = before2, strain[q] = least, hottest[q] = hot;
+	}
+#pragma omp simd
+	for (int q = 0; q < segments; q++)
+		found.least[q] = staticYield<kind>(yield, strain[q], hottest[q]).stress;
+	return found;
+}
+
+/// What a step changes of a segment.
+template <bool hourglass> struct Kept {
+	static constexpr int arrays = hourglass ? 5 : 3;
+	double* const        state[5];
+	double               kept[arrays][segment];
+	Kept(const Block& b, size_t at, int n)
+	        : state { b.sxx + at, b.syy + at, b.sxy + at, b.rx + at, b.ry + at }
+	{
+		for (int q = 0; q < arrays; q++)
+			for (int i = 0; i < n; i++) kept[q][i] = state[q][i];
+	}
+	void putBack(int n) const
+	{
+		for (int q = 0; q < arrays; q++) std::copy(kept[q], kept[q] + n, state[q]);
+	}
+};
 
 /// Laws that are dear: logarithms and powers are more than half of a cell's cost. A segment below the yield stress of its least strained and hottest
-/// cells is first computed without flow; if a cell comes to yield all the same, the old state is put back and computed anew.
+/// cells is first computed without flow; if a cell comes to yield all the same, the old state is put back and computed anew. Neighbours that flow are
+/// computed together: the loop over a row has much to prepare.
 template <YieldKind kind, GridViscosity visc, bool hourglass, EosKind eos>
 uint64_t dearRow(const Block& b, int j, int lo, int hi, const CellConstants& constants, const RowForces& f)
 {
-	constexpr bool heats = LawOf<kind>::heats;
-	uint64_t       worst = 0;
-	for (int from = lo; from < hi; from += segment) {
-		const int    to = std::min(from + segment, hi), n = to - from;
-		const size_t at = b.cell(from, j);
-		double       before2 = 0, hottest = 0, leastStrain = 1e300, most = 0;
-		const double *sxx = b.sxx + at, *syy = b.syy + at, *sxy = b.sxy + at, *temperature = heats ? b.temperature + at : nullptr, *eqps = b.eqps + at;
-#pragma omp simd reduction(max : before2, hottest) reduction(min : leastStrain)
-		for (int i = 0; i < n; i++) {
-			before2 = max(before2, 3. * (sxx[i] * sxx[i] + syy[i] * syy[i] + sxx[i] * syy[i] + sxy[i] * sxy[i]));
-			leastStrain = min(leastStrain, eqps[i]);
-			if constexpr (heats) hottest = max(hottest, temperature[i]);
-		}
-		const double least = staticYield<kind>(constants.yield, leastStrain, hottest).stress;
-		if (before2 < sqr(0.98 * least)) {
-			double  kept[5][segment];
-			double* state[5] = { b.sxx + at, b.syy + at, b.sxy + at, b.rx + at, b.ry + at };
-			const int arrays = hourglass ? 5 : 3;
-			for (int q = 0; q < arrays; q++)
-				std::copy(state[q], state[q] + n, kept[q]);
-			const uint64_t bits = cellLoop<kind, visc, hourglass, eos, false>(b, j, from, to, constants, f, most);
-			if (most <= least) {
-				worst = std::max(worst, bits);
+	uint64_t   worst = 0;
+	double     most  = 0;
+	int        flowing = lo; // from here to the present segment cells wait for their turn with flow
+	const auto flow = [&](int to) {
+		if (flowing < to) worst = std::max(worst, cellLoop<kind, visc, hourglass, eos, true>(b, j, flowing, to, constants, f, most));
+	};
+	for (int first = lo; first < hi; first += segments * segment) {
+		const int      last = std::min(first + segments * segment, hi);
+		const Segments look = lookAt<kind>(b, j, first, last, constants.yield);
+		for (int q = 0, from = first; from < last; q++, from += segment) {
+			if (!(look.before2[q] < sqr(0.98 * look.least[q]))) continue;
+			const int             to = std::min(from + segment, last);
+			const Kept<hourglass> kept(b, b.cell(from, j), to - from);
+			const uint64_t        bits = cellLoop<kind, visc, hourglass, eos, false>(b, j, from, to, constants, f, most);
+			if (!(most <= look.least[q])) {
+				kept.putBack(to - from);
 				continue;
 			}
-			for (int q = 0; q < arrays; q++)
-				std::copy(kept[q], kept[q] + n, state[q]);
+			flow(from), flowing = to, worst = std::max(worst, bits);
 		}
-		worst = std::max(worst, cellLoop<kind, visc, hourglass, eos, true>(b, j, from, to, constants, f, most));
 	}
+	flow(hi);
 	return worst;
 }
 
