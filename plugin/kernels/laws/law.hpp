@@ -83,8 +83,8 @@ struct PowerHardening {
 };
 MCA_INLINE PowerHardening powerHardening(double factor, double exponent, double eqps)
 {
-	const double ep = max(eqps, 1e-4), power = factor * fastPow(ep, exponent);
+	const double ep = max(eqps, 1e-4), slope = factor * fastPow(ep, exponent - 1.); // not power / ep: divisions are dear
 	const double near = min(eqps * 1e4, 1.);
-	return { power, near, (near < 1. ? 1. : exponent) * power / ep };
+	return { slope * ep, near, (near < 1. ? 1. : exponent) * slope };
 }
 }
