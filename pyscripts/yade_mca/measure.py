@@ -25,7 +25,7 @@ import numpy as np
 
 from ._arguments import array, number
 
-__all__ = ['RodMeasure', 'geometricLength', 'momentumSettled', 'rearClearance', 'rodMeasure', 'speedAlong']
+__all__ = ['RodMeasure', 'geometricLength', 'meanAround', 'momentumSettled', 'rearClearance', 'rodMeasure', 'speedAlong']
 
 TAIL_STRAIN = 0.1  #: material with less plastic strain is the undeformed tail [-]
 INTACT_STRAIN = 0.3  #: material with less plastic strain may count as intact rod [-]
@@ -133,6 +133,28 @@ def rearClearance(positions, plasticStrain, rear, normal=(0., -1.), quantile=0.9
 	s = speedAlong(positions - array('rear', rear, ValueError, (2, )), normal)
 	s = s[e < BROKEN_STRAIN]
 	return _quantile(s, quantile) if len(s) else -math.inf
+
+
+def meanAround(points, positions, mass, values, radius):
+	"""Means of `values` by mass over the material within `radius` [m] of each of `points`, and the places they stand for: (M,) or (M, k), and (M, 2) [m].
+
+	points (M, 2) [m], positions (N, 2) [m], mass (N,), values (N,) or (N, k): fields of the material, as pressure and equivalentStress. The way to read stresses
+	at a free surface that is stepped or curved: its single automata scatter about the field by some 15 % of the largest stress whatever the spacing, means over
+	2.3 spacings come nearer to it with the spacing. A mean stands for the middle of its material, half a spacing or more inside the surface, not for the
+	surface itself. nan where no material is near. Raises ValueError.
+	"""
+	points, x = array('points', points, ValueError, (None, 2)), array('positions', positions, ValueError, (None, 2))
+	m, v = array('mass', mass, ValueError, (None, )), array('values', values, ValueError, ((None, ), (None, None)))
+	radius = number('radius', radius, ValueError, above=0, unit=' m')
+	if not len(x) == len(m) == len(v): raise ValueError('positions, mass and values must have one entry per piece; got %d, %d and %d' % (len(x), len(m), len(v)))
+	if not (m >= 0).all(): raise ValueError('mass must not be negative; the smallest is %g' % m.min())
+	both = np.concatenate((x, v.reshape(len(v), -1)), axis=1)
+	means = np.full((len(points), both.shape[1]), math.nan)
+	for k, at in enumerate(points):
+		near = np.hypot(*(x - at).T) <= radius
+		total = m[near].sum()
+		if total > 0: means[k] = (m[near, None] * both[near]).sum(axis=0) / total
+	return means[:, 2:].reshape(len(points), *v.shape[1:]), means[:, :2]
 
 
 def momentumSettled(time, momentum, window, tolerance=1e-3):

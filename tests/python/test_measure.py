@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from yade_mca import measure
-from yade_mca.measure import geometricLength, momentumSettled, rearClearance, rodMeasure
+from yade_mca.measure import geometricLength, meanAround, momentumSettled, rearClearance, rodMeasure
 
 
 def rod(n=1000, speed=1520.):
@@ -104,6 +104,23 @@ def test_momentum_settles():
 	p = 100 * np.exp(-t / 1e-5)
 	assert not momentumSettled(t[:30], p[:30], 1e-5) and momentumSettled(t, p, 1e-5) and not momentumSettled(t[:5], p[:5], 1e-5)
 	assert not momentumSettled(t, 100 - 1e5 * t, 1e-5)
+
+
+def test_meansStandForTheirPlaces():
+	"""Of a linear field, at an edge as inside; one column as several."""
+	rng = np.random.default_rng(5)
+	x, m = rng.random((400, 2)), rng.random(400)
+	f = np.stack((3 + x @ (2., -1.), x[:, 1]), axis=1)
+	points = np.array([(0., 0.5), (0.5, 0.5), (1., 1.), (9., 9.)])
+	means, places = meanAround(points, x, m, f, 0.2)
+	assert np.isnan(means[3]).all() and np.isnan(places[3]).all()
+	assert means[:3, 0] == pytest.approx(3 + places[:3] @ (2., -1.)) and means[:3, 1] == pytest.approx(places[:3, 1])
+	assert places[0, 0] > 0.05 and np.hypot(*(places[1] - points[1])) < 0.05
+	assert meanAround(points[:3], x, m, f[:, 0], 0.2)[0] == pytest.approx(means[:3, 0], abs=0)
+	with pytest.raises(ValueError, match='one entry'):
+		meanAround(points, x, m[1:], f, 0.2)
+	with pytest.raises(ValueError, match='mass must not be negative'):
+		meanAround(points, x, -m, f, 0.2)
 
 
 @pytest.mark.parametrize('n', [1, 2, 3, 20, 21, 1000])
