@@ -20,7 +20,7 @@ from .watch import Watch, advance, jittered, watchedAutomata, watchedGrid
 DRIFT = 1e-4  #: largest change of the mean energy over a long run [-]
 SINGLE = 0.1  #: bound on single samples of the energy sum in those runs: leapfrog's own error of the waves near the limit of the step
 NOISE = 0.01  #: of the lattices behind whose shocks the shortest waves are measured: without it symmetry would hide them
-#: linear viscosity of the long runs, a hundredth of the default: without any, free surfaces of the affine rule feed energy into waves, see plugin/doc/stability.rst
+#: linear viscosity of long runs, a hundredth of the default: what the account books of it is tried, too; those without any are called noViscosity
 DAMPED = dict(viscosityLinear=0.0025)
 SPEED = 0.1  #: of the piston over the bulk sound speed
 
