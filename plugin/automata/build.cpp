@@ -24,19 +24,22 @@ namespace {
 				       + "); give finite numbers.");
 		};
 		for (const Vec<double>& v : { a.position, a.velocity }) std::for_each(v.component, v.component + dim, finite);
-		for (double v : { a.omega, a.angle, a.mass, a.inertia, a.diameter, a.weight, a.strength }) finite(v);
+		for (const Turn<double>& v : { a.omega, a.angle })
+			for (int c = 0; c < turns; c++) finite(turnComponent(v, c));
+		for (double v : { a.mass, a.inertia, a.diameter, a.weight, a.strength }) finite(v);
 		if (!(a.diameter > 0)) refuse("diameter " + number(a.diameter) + " m must be above zero.");
 		for (double x : a.position.component)
 			if (!(std::fabs(x) < 1e9 * a.diameter)) refuse("position " + number(a.position) + " m must be within 1e9 diameters of the origin.");
 		if (!(a.temperature >= 0 && std::isfinite(a.temperature)))
 			refuse("temperature " + number(a.temperature) + " K must be finite and not negative.");
 		if (!(a.mass > 0)) refuse("mass " + number(a.mass) + " kg/m must be above zero; set state.mass (rho times area).");
-		if (a.freeR && !(a.inertia > 0)) refuse("inertia " + number(a.inertia) + " kg m must be above zero, or block the rotation.");
+		if (any(a.freeR) && !(a.inertia > 0)) refuse("inertia " + number(a.inertia) + " kg m must be above zero, or block the rotation.");
 		if (!(a.weight > 0 && a.weight <= 2)) refuse("weight " + number(a.weight) + " must be in (0, 2].");
 		if (!(a.eqps >= 0 && std::isfinite(a.eqps))) refuse("plastic strain " + number(a.eqps) + " must be finite and not negative.");
 		if (!(a.strength > 0)) refuse("strength factor " + number(a.strength) + " must be above zero.");
 		if (a.material < 0 || size_t(a.material) >= nMaterials) refuse("unknown material number " + std::to_string(a.material) + ".");
-		if (a.triangles < 0 || a.triangles > nLinks) refuse("triangles " + std::to_string(a.triangles) + " must be from 0 to 6.");
+		if (a.triangles < 0 || a.triangles > nLinks)
+			refuse("triangles " + std::to_string(a.triangles) + " must be from 0 to " + std::to_string(nLinks) + ".");
 		if (a.id < 0) refuse("negative number.");
 	}
 }
@@ -90,10 +93,10 @@ void Solver::makeBlocks(const std::vector<Automaton>& in)
 		const Automaton& a = in[source[i]];
 		if (place[a.id] >= 0) throw Error("automaton " + std::to_string(a.id) + " is given twice.");
 		place[a.id] = int32_t(i);
-		S.position.set(i, a.position), S.velocity.set(i, a.velocity), S.omega[i] = a.omega, S.angle[i] = a.angle;
+		S.position.set(i, a.position), S.velocity.set(i, a.velocity), setTurn(S.omega, i, a.omega), setTurn(S.angle, i, a.angle);
 		S.mass[i] = a.mass, S.inertia[i] = a.inertia, S.weight[i] = a.weight, S.strength[i] = a.strength, S.eqps[i] = a.eqps;
 		for (int c = 0; c < dim; c++) S.perMass[c][i] = a.free[c] ? 1. / a.mass : 0.;
-		S.perInertia[i] = a.freeR ? 1. / a.inertia : 0.;
+		for (int c = 0; c < turns; c++) turnPlane(S.perInertia, c)[i] = turnComponent(a.freeR, c) ? 1. / a.inertia : 0.;
 		S.id[i] = a.id, S.group[i] = a.group;
 		if (a.temperature > 0) S.temperature[i] = a.temperature;
 		S.cell[i] *= a.weight;
@@ -120,8 +123,7 @@ void Solver::makeLinks(const Solver* old)
 	for (size_t i = 0; i < n; i++)
 		for (int k = 0; k < nLinks; k++)
 			S.neighbour[linkSlot(i, k)] = int32_t(i);
-	S.s.assign(S.neighbour.size(), 0.);
-	S.tau.assign(S.neighbour.size(), 0.);
+	S.resizeStresses(S.neighbour.size());
 	if (old) inheritLinks(*old);
 	auto              known = [&](size_t i) { return old && indexIn(*old, S.id[i]) >= 0; };
 	std::vector<Near> near(n);
@@ -138,7 +140,7 @@ void Solver::makeLinks(const Solver* old)
 				const double r = std::sqrt(S.distance2(i, j)), d = S.restDistance(i, j);
 				if (r < 0.5 * d) overlapError(i, j, r / d);
 				if (S.group[i] != S.group[j] || r >= options.linkFactor * d) continue;
-				if (found < nLinks) near[i].other[found] = j, near[i].angle[found] = Lattice::angle(S.between(i, j));
+				if (found < nLinks) near[i].other[found] = j, near[i].bearing[found] = Lattice::bearing(S.between(i, j));
 				found++;
 			}
 		});
@@ -148,76 +150,29 @@ void Solver::makeLinks(const Solver* old)
 	if (crowded >= 0) {
 		std::ostringstream s;
 		s << "automaton " << S.id[crowded] << " at " << S.position.at(crowded) << " m has " << most << " neighbours within " << options.linkFactor
-		  << " diameters; the hexagonal packing has at most 6. The spacing of the packing does not match the diameter " << S.diameter[crowded]
+		  << " diameters; the " << Lattice::name << " packing has at most " << nLinks
+		  << ". The spacing of the packing does not match the diameter " << S.diameter[crowded]
 		  << " m: build the packing with this spacing.";
 		throw Error(s.str());
 	}
 	placeLinks(near, old);
+	checkPlaces();
 	for (size_t i = 0; i < n; i++)
 		if (S.id[i] >= 0 && (S.flags[i] & linkBits) != linkBits) S.flags[i] |= exposedBit;
 	makeOutlines(old);
 }
 
-// Link k points at 60 k degrees in the frame of the packing. The frame is found from one automaton of each linked body and handed on from
-// neighbour to neighbour, so that bodies of any orientation and slightly irregular packings get consistent slots.
-void Solver::placeLinks(const std::vector<Near>& near, const Solver* old)
+/// That both ends of each link know it as one.
+void Solver::checkPlaces() const
 {
-	Store&               S     = store;
-	std::vector<double>  frame(S.size(), 1e9);
-	std::vector<int32_t> queue;
-	// automata that were there before know their frame from the links they have
-	for (size_t i = 0; old && i < S.size(); i++) {
-		double c = 0, s = 0;
-		for (int k = 0; k < nLinks; k++)
-			if ((S.flags[i] >> k) & 1) {
-				const int32_t j = S.neighbour[linkSlot(i, k)];
-				const double  turn = Lattice::angle(S.between(i, j)) - k * Lattice::turn;
-				c += std::cos(turn), s += std::sin(turn);
-			}
-		if (c != 0 || s != 0) frame[i] = std::atan2(s, c);
-	}
-	std::vector<char> done(S.size(), 0);
-	std::vector<int32_t> seeds;
-	for (int pass = 0; pass < 2; pass++) // bodies that go on first
-		for (size_t i = 0; i < S.size(); i++)
-			if (S.id[i] >= 0 && near[i].count > 0 && (frame[i] < 1e8) == (pass == 0)) seeds.push_back(int32_t(i));
-	for (size_t seed : seeds) {
-		if (done[seed]) continue;
-		if (frame[seed] > 1e8) frame[seed] = std::remainder(near[seed].angle[0], Lattice::turn);
-		done[seed] = 1;
-		queue.assign(1, int32_t(seed));
-		for (size_t q = 0; q < queue.size(); q++) {
-			const size_t i   = queue[q];
-			double       off = 0;
-			for (int f = 0; f < near[i].count; f++) {
-				const double turn = (near[i].angle[f] - frame[i]) / Lattice::turn, slot = std::round(turn);
-				const int    k = ((int(slot) % nLinks) + nLinks) % nLinks;
-				off += turn - slot;
-				if (std::fabs(turn - slot) > 0.42 || ((S.flags[i] >> k) & 1)) {
-					std::ostringstream s;
-					s << "automaton " << S.id[i] << " at " << S.position.at(i)
-					  << " m: its neighbours do not stand at multiples of 60 degrees (one is off by " << 60. * std::fabs(turn - slot)
-					  << " degrees). Link hexagonal packings of one orientation only; give bodies of another orientation another mask.";
-					throw Error(s.str());
-				}
-				S.neighbour[linkSlot(i, k)] = near[i].other[f];
-				S.flags[i] |= (1 << k) | (1 << (hadShift + k));
-			}
-			frame[i] += Lattice::turn * off / near[i].count;
-			for (int f = 0; f < near[i].count; f++) {
-				const int32_t j = near[i].other[f];
-				if (done[j]) continue;
-				if (frame[j] > 1e8) frame[j] = frame[i];
-				done[j] = 1, queue.push_back(j);
-			}
-		}
-	}
+	const Store& S = store;
 	for (size_t i = 0; i < S.size(); i++)
 		for (int k = 0; k < nLinks; k++)
 			if (((S.flags[i] >> k) & 1) && S.neighbour[linkSlot(S.neighbour[linkSlot(i, k)], Lattice::opposite(k))] != int32_t(i))
 				throw Error(
 					"automata " + std::to_string(S.id[i]) + " and " + std::to_string(S.id[S.neighbour[linkSlot(i, k)]])
-					+ " see each other in directions that do not belong to one hexagonal packing; build the body as one packing.");
+					+ " see each other in directions that do not belong to one " + Lattice::name
+					+ " packing; build the body as one packing.");
 }
 
 std::vector<std::pair<int32_t, int32_t>> Solver::links() const
@@ -257,7 +212,7 @@ void Solver::classify()
 		B.mixed   = false;
 		B.outline = false;
 		for (int l = 0; l < blockSize; l++) {
-			const int32_t f = S.flags[b * blockSize + l];
+			const Flags f = S.flags[b * blockSize + l];
 			if (!isWhole(f)) B.intact = false;
 			B.outline |= trianglesIn(f) != 0;
 			for (int k = 0; k < nLinks; k++) {
@@ -275,6 +230,10 @@ void Solver::build(const std::vector<Automaton>& automata, const std::vector<Mat
 {
 	for (auto& a : automata)
 		check(a, materials.size());
+	if (Lattice::affineOnly && o.volumeRule != VolumeRule::affine)
+		throw Error(
+			std::string("the volume rule must be affine in the ") + Lattice::name
+			+ " packing: with inversePower its stiffness under pressure depends on the direction, with meanDistance it collapses.");
 	options         = o;
 	store           = Store();
 	contacts        = Contacts();
@@ -305,7 +264,7 @@ void Solver::build(const std::vector<Automaton>& automata, const std::vector<Mat
 	for (auto& B : S.blocks)
 		B.awake = !options.sleeping, B.moving = false;
 	for (size_t i = 0; i < S.size(); i++)
-		if (!isZero(S.velocity.at(i)) || S.omega[i] != 0) S.blocks[i / blockSize].moving = true;
+		if (!isZero(S.velocity.at(i)) || !isZero(turnAt(S.omega, i))) S.blocks[i / blockSize].moving = true;
 	topologyChanged = true;
 	sums.kineticStart = 0;
 	sums.kineticStart = account().kinetic;

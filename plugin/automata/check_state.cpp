@@ -62,6 +62,22 @@ namespace {
 		return ok;
 	}
 
+	/// Whether the stresses of links or contacts are finite.
+	template <class At> bool finiteSides(size_t n, At&& at)
+	{
+		bool ok = true;
+		for (size_t q = 0; q < n; q++) ok &= plainSquare(at(q)) < largest * largest;
+		return ok;
+	}
+	bool stressesFinite(const Store& S)
+	{
+		return finiteSides(S.stresses(), [&](size_t q) { return S.stressAt(q); }) && outOfPlane(S, finite);
+	}
+	bool sidesFinite(const Contacts& C)
+	{
+		return finiteSides(C.size(), [&](size_t c) { return sideOf(C, c); });
+	}
+
 	void checkBlocks(const Store& S, const Indices& place)
 	{
 		const size_t n = S.size();
@@ -76,7 +92,7 @@ namespace {
 			need(there ? S.id[i] >= 0 && size_t(S.id[i]) < place.size() && size_t(place[size_t(S.id[i])]) == i : S.id[i] == -1,
 			     "the number of an automaton");
 			need(there || S.flags[i] == 0, "padding");
-			need(!(S.flags[i] & ~(linkBits | halfBits | linkBits << hadShift | exposedBit | tiedBit | int32_t(outlineBits))), "flags");
+			need(!(S.flags[i] & ~(linkBits | halfBits | linkBits << hadShift | exposedBit | tiedBit | Flags(outlineBits))), "flags");
 			known += there;
 		}
 		size_t listed = 0;
@@ -95,16 +111,17 @@ namespace {
 			[&](auto& v, Presence p) { need(v.size() == n || (p == Presence::whenUsed && v.empty()), "the length of an array"); });
 		bool heats = false;
 		for (const Material& m : S.materials) heats |= m.eos.heats();
-		need(S.heat.empty() != heats && sized(S.outside, S.outsideTorque.size()) && sized(S.damp, S.damp.size()), "the length of an array");
+		const size_t given = turnPlane(S.outsideTorque, 0).size();
+		need(S.heat.empty() != heats && sized(S.outside, given) && sized(S.damp, S.damp.size()), "the length of an array");
 		need(allOf(finite, S.position, S.velocity, S.omega, S.angle, S.rest, S.factor, S.inertia), "a position or velocity");
 		need(allOf(positive, S.mass, S.diameter, S.cell, S.invN, S.strength, S.weight), "a mass or size");
 		need(allOf(notNegative, S.perMass, S.perInertia, S.damp), "a mass or damping");
 		for (size_t i = 0; i < n; i++) need(S.diameter[i] == S.species[size_t(S.speciesOf(i))].d, "a diameter");
 		const size_t links = n * nLinks;
-		need(S.neighbour.size() == links && S.s.size() == links && S.tau.size() == links, "the length of the links");
+		need(S.neighbour.size() == links && S.stresses() == links, "the length of the links");
 		if (stopped) return;
-		need(allOf(finite, S.dTheta, S.P, S.mean, S.viscous, S.h, S.szz, S.temperature, S.criterion, S.heat, S.force, S.torque, S.outside,
-		           S.outsideTorque, S.s, S.tau),
+		need(allOf(finite, S.dTheta, S.P, S.mean, S.viscous, S.h, S.temperature, S.criterion, S.heat, S.force, S.torque, S.outside, S.outsideTorque)
+		             && stressesFinite(S),
 		     "a stress or force");
 		need(positive(S.J) && notNegative(S.eqps), "a volume or strain");
 	}
@@ -135,7 +152,7 @@ namespace {
 	void checkContacts(const Contacts& C, const Store& S, bool stopped, bool waiting)
 	{
 		const size_t m = C.size();
-		need(m < size_t(1) << 31 && C.other.size() == m && size({ &C.s, &C.tau, &C.rest, &C.twoG }, m), "the length of the contacts");
+		need(m < size_t(1) << 31 && C.other.size() == m && sidesAre(C, m) && size({ &C.rest, &C.twoG }, m), "the length of the contacts");
 		need(waiting || (C.reverse.size() == m && size({ &C.d, &C.friction, &C.viscLinear, &C.viscQuadratic, &C.arm }, m)),
 		     "the length of the contacts");
 		need(C.rows() == 0 && C.rowBegin.empty() ? m == 0 : offsets(C.rowBegin, C.rows(), m), "the rows of the contacts");
@@ -156,7 +173,7 @@ namespace {
 		need(notNegative(C.rest) && notNegative(C.twoG) && positive(C.d) && notNegative(C.friction) && notNegative(C.viscLinear)
 		             && notNegative(C.viscQuadratic) && positive(C.arm),
 		     "a constant of a contact");
-		need(stopped || (finite(C.s) && finite(C.tau)), "the stress of a contact");
+		need(stopped || sidesFinite(C), "the stress of a contact");
 	}
 } // namespace
 
@@ -193,10 +210,10 @@ void Solver::checkState() const
 	need(offsets(adjacentBegin, blocks, adjacent.size()) && within(adjacent, blocks), "the neighbours of blocks");
 	need(within(awake, blocks), "the list of blocks awake");
 	for (size_t k = 1; k < awake.size(); k++) need(awake[k] > awake[k - 1], "the list of blocks awake");
-	need(within(tied, n) && sized(tiedVelocity, tied.size()) && tiedSpin.size() == tied.size() && allOf(finite, tiedVelocity, tiedSpin),
+	need(within(tied, n) && sized(tiedVelocity, tied.size()) && turnPlane(tiedSpin, 0).size() == tied.size() && allOf(finite, tiedVelocity, tiedSpin),
 	     "the list of tied automata");
 	size_t carried = 0;
-	for (int32_t f : S.flags) carried += (f & tiedBit) != 0;
+	for (Flags f : S.flags) carried += (f & tiedBit) != 0;
 	std::vector<char> seen(n, 0);
 	for (int32_t i : tied) {
 		need(S.id[size_t(i)] >= 0 && (S.flags[size_t(i)] & tiedBit) && !seen[size_t(i)], "the list of tied automata");

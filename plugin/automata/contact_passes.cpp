@@ -72,8 +72,9 @@ namespace {
 	/// What the trial stresses read of the automata.
 	struct Movers {
 		const Planes<const double> velocity;
-		const double *             omega, *dTheta, *J;
-		explicit Movers(const Store& S) : velocity(S.velocity.planes()), omega(S.omega.data()), dTheta(S.dTheta.data()), J(S.J.data()) { }
+		const Rotations            omega;
+		const double *             dTheta, *J;
+		explicit Movers(const Store& S) : velocity(S.velocity.planes()), omega(S.omega), dTheta(S.dTheta.data()), J(S.J.data()) { }
 	};
 	/// Returns the relative speed squared [m2/s2].
 	template <bool account> MCA_INLINE double trialOf(const View& V, const Movers& M, double dt, long c)
@@ -81,15 +82,15 @@ namespace {
 		const int32_t     i = V.owner[c], j = V.other[c];
 		const Vec<double> r = V.between.at(c), v = M.velocity.at(j) - M.velocity.at(i);
 		const double      touch = max(V.pushing[c], V.pushing[V.reverse[c]]), perOldJ = perOldRatio(M.dTheta[i], M.J[i]);
-		const Pair<double> old { V.s[c] * perOldJ, V.tau[c] * perOldJ };
-		const auto         strain = strainIncrement(r, v * dt, pairSpin(M.omega[i], M.omega[j], V.arm[c], dt));
-		const Pair<double> all = trialStress(old, strain, pairDilation(M.dTheta[i], M.dTheta[j], ofBoth), V.twoG[c]);
-		const Pair<double> now { touch > 0. ? all.normal : 0., touch > 0. ? all.shear : 0. };
+		const Side<double> old = scaled(sideOf(V, c), perOldJ);
+		const ContactTrial all = contactTrial(
+			old, r, v * dt, pairSpin(M.omega.at(i), M.omega.at(j), V.arm[c], dt), pairDilation(M.dTheta[i], M.dTheta[j], ofBoth), V.twoG[c]);
+		const Side<double> now = where(touch > 0., all.trial);
 		V.touch[c] = touch, V.along[c] = dot(r, v);
-		V.second[c] = old.normal, V.third[c] = old.shear; // for the account
-		V.s[c] = now.normal, V.tau[c] = now.shear;
+		setBefore(V, c, all.before); // for the account
+		setSide(V, c, now);
 		V.first[c] = square(now);
-		if (account) V.press[c] = product(old, now); // place for the sums; the pressure comes later
+		if (account) V.press[c] = product(all.before, now); // place for the sums; the pressure comes later
 		return dot(v, v);
 	}
 	template <bool account> double trial(const Store& S, Contacts& C, double dt)
@@ -110,11 +111,9 @@ namespace {
 	template <bool account> MCA_INLINE void frictionOf(const View& V, const double* J, const double* dTheta, const double* scale, long c)
 	{
 		const int32_t      i = V.owner[c];
-				  const ContactSide  side {
-                        { V.second[c], V.third[c] }, { V.s[c], V.tau[c] }, V.press[c], V.r2[c], V.d[c], V.friction[c], J[i], scale[i], V.touch[c] > 0.
-                };
-				  const Pair<double> after = afterFriction(side);
-		V.s[c] = after.normal, V.tau[c] = after.shear;
+		const ContactSide  side  = contactSide(V, c, J[i], scale[i]);
+		const Side<double> after = afterFriction(side);
+		setSide(V, c, after);
 		if (account) {
 			const ContactWork w = contactWork(side, after, V.perTwoG[c], V.perOwnG[c], dTheta[i], dTheta[V.other[c]]);
 			V.first[c] = w.friction, V.second[c] = w.coupling, V.third[c] = w.plastic;
@@ -160,11 +159,13 @@ namespace {
 		const int32_t      r   = V.reverse[c];
 		const Vec<double>  x   = V.between.at(c);
 		const double       d = V.d[c], inv = 1. / V.r2[c], on = V.touch[c], area = pairArea(1., d);
-		const Pair<double> both { on * (area * (V.s[c] + V.s[r])), on * (area * (V.tau[c] + V.tau[r])) };
+		const Side<double> both = scaled(ofBothSides(area, sideOf(V, c), sideOf(V, r)), on);
 		const double       q  = on * viscousCoefficient(V.along[c], inv, V.viscLinear[c], V.viscQuadratic[c], Lattice::width(d)), pr = on * V.press[c];
-		V.between.set(c, contactForce(x, both, inv, q, pr));
-		t[c]   = V.arm[c] * both.shear;
-		if (account) planesFrom(t + n, n).set(c, x * -pr), planesFrom(t + (1 + dim) * n, n).set(c, x * q);
+		const Vec<double>  F  = contactForce(x, both, inv, q, pr);
+		const Turn<double> T  = contactTorque(V.arm[c], x, both, F);
+		V.between.set(c, F);
+		for (int k = 0; k < turns; k++) t[k * n + c] = turnComponent(T, k);
+		if (account) planesFrom(t + turns * n, n).set(c, x * -pr), planesFrom(t + (turns + dim) * n, n).set(c, x * q);
 	}
 	template <bool account> void forces(Contacts& C, double* t)
 	{
@@ -226,20 +227,22 @@ void contactPressure(const Store& S, Contacts& C, VolumeRule rule)
 void contactForces(Contacts& C, ContactScratch& out, bool account)
 {
 	const long n = long(C.size());
-	out.terms.resize(account ? n * (1 + 2 * dim) : n);
+	out.terms.resize(account ? n * (turns + 2 * dim) : n * turns);
 	double* t = out.terms.data();
 	account ? forces<true>(C, t) : forces<false>(C, t);
-	std::array<const double*, 1 + dim> from { t };
-	std::array<double*, 1 + dim>       to { out.torque.data() };
+	std::array<const double*, turns + dim> from;
+	std::array<double*, turns + dim>       to;
+	for (int c = 0; c < turns; c++)
+		from[c] = t + c * n, to[c] = turnPlane(out.torque, c).data();
 	for (int c = 0; c < dim; c++)
-		from[1 + c] = C.between[c].data(), to[1 + c] = out.force[c].data();
-	addRows<1 + dim>(C, from, to);
+		from[turns + c] = C.between[c].data(), to[turns + c] = out.force[c].data();
+	addRows<turns + dim>(C, from, to);
 	if (!account) return;
 	std::array<const double*, 2 * dim> shares;
 	std::array<double*, 2 * dim>       sums;
 	for (int c = 0; c < dim; c++) {
-		shares[c] = t + (1 + c) * n, sums[c] = out.volumetric[c].data();
-		shares[dim + c] = t + (1 + dim + c) * n, sums[dim + c] = out.viscous[c].data();
+		shares[c] = t + (turns + c) * n, sums[c] = out.volumetric[c].data();
+		shares[dim + c] = t + (turns + dim + c) * n, sums[dim + c] = out.viscous[c].data();
 	}
 	addRows<2 * dim>(C, shares, sums);
 }

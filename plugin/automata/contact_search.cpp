@@ -51,7 +51,7 @@ namespace {
 				int64_t here = nothing;
 				for (int32_t p = grid.begin[c]; p < grid.begin[c + 1]; p++) {
 					const int32_t j = grid.item[p];
-					add(here, linkCount(S.flags[j]) < 3 ? anything : S.group[j]);
+					add(here, linkCount(S.flags[j]) < Lattice::volumeLinks ? anything : S.group[j]);
 				}
 				if (here == nothing) continue;
 				grid.eachRunAround(grid.position.at(grid.begin[c]), [&](size_t first, size_t last) {
@@ -88,17 +88,17 @@ namespace {
 		return all;
 	}
 	/// stress of a pair before: an old contact, or a link that has just broken
-	void carryOver(const Store& S, const Contacts& old, const std::vector<int32_t>& oldRow, int32_t i, int32_t j, double& s, double& tau, double& rest)
+	void carryOver(const Store& S, const Contacts& old, const std::vector<int32_t>& oldRow, int32_t i, int32_t j, Side<double>& stress, double& rest)
 	{
 		if (!oldRow.empty() && oldRow[i] >= 0)
 			for (int32_t c = old.rowBegin[oldRow[i]]; c < old.rowBegin[oldRow[i] + 1]; c++)
 				if (old.other[c] == j) {
-					s = old.s[c], tau = old.tau[c], rest = old.rest[c];
+					stress = sideOf(old, c), rest = old.rest[c];
 					return;
 				}
 		for (int k = 0; k < nLinks; k++)
 			if (hasHeld(S.flags[i], k) && !holds(S.flags[i], k) && S.neighbour[linkSlot(i, k)] == j)
-				s = S.s[linkSlot(i, k)], tau = S.tau[linkSlot(i, k)];
+				stress = S.stressAt(linkSlot(i, k));
 	}
 	/// What a pair of species has in common.
 	struct PairConstants {
@@ -214,8 +214,9 @@ void searchContacts(Store& S, const std::vector<int32_t>& exposed, Contacts& C, 
 			for (int32_t q = C.rowBegin[rowOf[j]]; q < C.rowBegin[rowOf[j] + 1]; q++)
 				if (C.other[q] == C.owner[c]) C.reverse[c] = q;
 			constants(S, table, C, c);
-			C.s[c] = C.tau[c] = 0.;
-			carryOver(S, old, oldRow, C.owner[c], j, C.s[c], C.tau[c], C.rest[c]);
+			Side<double> stress {};
+			carryOver(S, old, oldRow, C.owner[c], j, stress, C.rest[c]);
+			setSide(C, c, stress);
 		}
 	});
 	contactReciprocals(S, C);

@@ -7,12 +7,12 @@
 
 namespace mca::automata {
 
-void Solver::addForce(size_t i, Vec<double> force, double torque)
+void Solver::addForce(size_t i, Vec<double> force, Turn<double> torque)
 {
 	Store& S = store;
-	if (S.outside.empty()) S.outside.resize(S.size()), S.outsideTorque.resize(S.size(), 0.);
-	S.outside.add(i, force), S.outsideTorque[i] += torque;
-	if (!isZero(force) || torque != 0) {
+	if (S.outside.empty()) S.outside.resize(S.size()), S.outsideTorque.resize(S.size());
+	S.outside.add(i, force), addTurn(S.outsideTorque, i, torque);
+	if (!isZero(force) || !isZero(torque)) {
 		if (!S.blocks[i / blockSize].moving) topologyChanged = true;
 		S.blocks[i / blockSize].moving = true;
 	}
@@ -41,20 +41,20 @@ size_t Solver::tie(size_t i, bool freeSpin)
 	if (S.flags[i] & tiedBit) throw Error("automaton " + std::to_string(S.id[i]) + " is tied already.");
 	S.flags[i] |= tiedBit;
 	S.perMass.set(i, {});
-	if (!freeSpin) S.perInertia[i] = 0.;
-	tied.push_back(int32_t(i)), tiedVelocity.push_back(S.velocity.at(i)), tiedSpin.push_back(S.omega[i]);
-	sums.kineticStart -= 0.5 * (S.mass[i] * plainSquare(S.velocity.at(i)) + (S.perInertia[i] > 0 ? 0. : S.inertia[i] * sqr(S.omega[i])));
+	if (!freeSpin) setTurn(S.perInertia, i, {});
+	tied.push_back(int32_t(i)), tiedVelocity.push_back(S.velocity.at(i)), tiedSpin.push_back(turnAt(S.omega, i));
+	sums.kineticStart -= 0.5 * (S.mass[i] * plainSquare(S.velocity.at(i)) + (turnsFreely(i) ? 0. : S.inertia[i] * plainSquare(turnAt(S.omega, i))));
 	return tied.size() - 1;
 }
 
-void Solver::setTiedVelocity(size_t t, Vec<double> velocity, double omega)
+void Solver::setTiedVelocity(size_t t, Vec<double> velocity, Turn<double> omega)
 {
 	Store&       S = store;
 	const size_t i = tied[t];
-	tiedVelocity.set(t, S.velocity.at(i)), tiedSpin[t] = S.omega[i];
+	tiedVelocity.set(t, S.velocity.at(i)), setTurn(tiedSpin, t, turnAt(S.omega, i));
 	S.velocity.set(i, velocity);
-	if (!(S.perInertia[i] > 0)) S.omega[i] = omega;
-	if ((!isZero(velocity) || omega != 0) && !S.blocks[i / blockSize].moving) S.blocks[i / blockSize].moving = topologyChanged = true;
+	if (!turnsFreely(i)) setTurn(S.omega, i, omega);
+	if ((!isZero(velocity) || !isZero(omega)) && !S.blocks[i / blockSize].moving) S.blocks[i / blockSize].moving = topologyChanged = true;
 }
 
 void Solver::moved()

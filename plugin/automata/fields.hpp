@@ -3,23 +3,26 @@
 // checked after loading and McaEngine.field() follow from these rows. The rows of vectors hold the names of their components in saved states and for scripts;
 // nothing else in this folder knows how many there are.
 #pragma once
+#include "../kernels/dimension.hpp"
 #include <cstdint>
-
-/// A row of rotations or torques: plane motion turns about one axis.
-#define MCA_TURN(F, z, type, presence, shown, text) F(z, type, presence, shown, text)
+#if MCA_DIM == 2
+#include "plane/fields.hpp"
+#else
+#include "space/fields.hpp"
+#endif
 
 /// F(name, type, presence, shown, text), V(name, presence, scripts, text, names of the components); presence: `always` an entry per automaton, `whenUsed`:
-/// empty in scenes without it; shown: name for McaEngine.field(), "" for none; scripts: whether it shows the components. SI units per unit thickness.
+/// empty in scenes without it; shown: name for McaEngine.field(), "" for none; scripts: whether it shows the components. SI units, in the plane per thickness.
 #define MCA_AUTOMATON_FIELDS(F, V) \
 	F(factor, double, always, "", "affine rule: J of the links = factor det F; 0 = too few links to have a volume [-]") \
-	V(position, always, shown, "[m]", "x", "y") \
-	V(velocity, always, shown, "[m/s]", "vx", "vy") \
-	MCA_TURN(F, omega, double, always, "omega", "spin [rad/s]") \
-	MCA_TURN(F, angle, double, always, "angle", "turned angle [rad]") \
+	V(position, always, shown, "[m]", MCA_COMPONENTS("x", "y", "z")) \
+	V(velocity, always, shown, "[m/s]", MCA_COMPONENTS("vx", "vy", "vz")) \
+	MCA_TURN(F, V, omega, always, "omega", shown, "spin [rad/s]") \
+	MCA_TURN(F, V, angle, always, "angle", hidden, "turned angle, about each axis [rad]") \
 	F(mass, double, always, "mass", "[kg/m]") \
-	MCA_TURN(F, inertia, double, always, "", "[kg m]") \
-	V(perMass, always, hidden, "1/mass [m/kg]; zero where the degree of freedom is blocked", "perMassX", "perMassY") \
-	MCA_TURN(F, perInertia, double, always, "", "1/inertia [1/(kg m)]; zero where it is blocked") \
+	F(inertia, double, always, "", "[kg m]") \
+	V(perMass, always, hidden, "1/mass [m/kg]; zero where the degree of freedom is blocked", MCA_COMPONENTS("perMassX", "perMassY", "perMassZ")) \
+	MCA_TURN(F, V, perInertia, always, "", hidden, "1/inertia [1/(kg m)]; zero where it is blocked") \
 	F(diameter, double, always, "diameter", "[m]") \
 	F(cell, double, always, "", "Omega0 [m2]") \
 	F(invN, double, always, "", "1/N of the volume rule [-]") \
@@ -30,19 +33,19 @@
 	F(mean, double, always, "pressure", "mean pressure: P, in the affine rule with the part of (5f) [Pa]") \
 	F(viscous, double, always, "", "viscous pressure (12a) of the last move [Pa]") \
 	F(h, double, always, "", "pressure share of (6) [N/m]") \
-	F(szz, double, always, "stressZZ", "deviator normal to the plane [Pa]") \
+	MCA_OUT_OF_PLANE(F) \
 	F(eqps, double, always, "plasticStrain", "equivalent plastic strain [-]") \
 	F(temperature, double, always, "temperature", "[K]") \
 	F(strength, double, always, "strength", "factor on the fracture criteria [-]") \
 	F(criterion, double, always, "", "largest criterion / its limit [-]; a pair breaks at a mean of 1") \
 	F(heat, double, whenUsed, "", "internal energy per mass, where a law heats [J/kg]") \
-	V(force, always, shown, "of the last computeForces() [N/m]", "fx", "fy") \
-	MCA_TURN(F, torque, double, always, "", "torque of it [N]") \
-	V(outside, whenUsed, hidden, "force from outside [N/m]", "outsideX", "outsideY") \
-	MCA_TURN(F, outsideTorque, double, whenUsed, "", "torque from outside [N]") \
-	V(damp, whenUsed, hidden, "viscous boundary rho c A [kg/(m s)]", "dampX", "dampY") \
+	V(force, always, shown, "of the last computeForces() [N/m]", MCA_COMPONENTS("fx", "fy", "fz")) \
+	MCA_TURN(F, V, torque, always, "", hidden, "torque of it [N]") \
+	V(outside, whenUsed, hidden, "force from outside [N/m]", MCA_COMPONENTS("outsideX", "outsideY", "outsideZ")) \
+	MCA_TURN(F, V, outsideTorque, whenUsed, "", hidden, "torque from outside [N]") \
+	V(damp, whenUsed, hidden, "viscous boundary rho c A [kg/(m s)]", MCA_COMPONENTS("dampX", "dampY", "dampZ")) \
 	F(weight, double, always, "weight", "share of the full cell [-]") \
-	F(flags, int32_t, always, "", "Flag bits") \
+	F(flags, Flags, always, "", "Flag bits") \
 	F(id, int32_t, always, "", "caller's number, -1: padding") \
 	F(group, int32_t, always, "", "link group")
 
@@ -51,8 +54,7 @@
 	F(owner, int32_t, saved, "automaton whose side this is") \
 	F(other, int32_t, saved, "automaton at the other side") \
 	F(reverse, int32_t, saved, "place of the other half") \
-	F(s, double, saved, "J times normal stress of this side [Pa]") \
-	F(tau, double, saved, "J times shear stress of this side [Pa]") \
+	MCA_CONTACT_SIDES(F, V) \
 	F(rest, double, saved, "rest distance of this side: that of the two automata, or less when they came into contact already closer [m]") \
 	F(d, double, saved, "mean diameter [m]") \
 	F(twoG, double, saved, "2G of the pair [Pa]") \
@@ -60,9 +62,10 @@
 	F(viscLinear, double, saved, "linear coefficient of (12) [kg/(m2 s)]") \
 	F(viscQuadratic, double, saved, "quadratic coefficient of (12) [kg/m3]") \
 	F(arm, double, saved, "arm of the owner over the distance [-]") \
+	MCA_CONTACT_BEFORE(F, V) \
 	F(perTwoG, double, scratch, "1/twoG [1/Pa]; 0 where that is zero") \
 	F(perOwnG, double, scratch, "1/G of the owner's material [1/Pa]; 0 where that is zero") \
-	V(between, scratch, "from owner to other in this step [m], then the force on the owner [N/m]", "dx", "dy") \
+	V(between, scratch, "from owner to other in this step [m], then the force on the owner [N/m]", MCA_COMPONENTS("dx", "dy", "dz")) \
 	F(r2, double, scratch, "its square [m2]") \
 	F(pushing, double, scratch, "1 where this side pushes, else 0") \
 	F(touch, double, scratch, "1 where any side pushes, else 0") \
@@ -76,13 +79,13 @@
 /// `whenUsed`: for the account only.
 #define MCA_CONTACT_SUMS(F, V) \
 	F(sum, always, "volume terms [-]") \
-	F(square, always, "s^2 + tau^2 [Pa2]") \
+	F(square, always, "squares of the stresses [Pa2]") \
 	F(old, whenUsed, "products of the stresses before the step and the trial stresses [Pa2]") \
 	F(scale, always, "M of the radial return, for its contacts [-]") \
-	V(force, always, "[N/m]", "fx", "fy") \
-	F(torque, always, "[N]") \
-	V(volumetric, whenUsed, "share of the force [N/m]", "volX", "volY") \
-	V(viscous, whenUsed, "share of the force [N/m]", "visX", "visY")
+	V(force, always, "[N/m]", MCA_COMPONENTS("fx", "fy", "fz")) \
+	MCA_TURN_SUM(F, V, torque, always, "[N]") \
+	V(volumetric, whenUsed, "share of the force [N/m]", MCA_COMPONENTS("volX", "volY", "volZ")) \
+	V(viscous, whenUsed, "share of the force [N/m]", MCA_COMPONENTS("visX", "visY", "visZ"))
 
 namespace mca::automata {
 /// Whether an array is there in every scene, and whether it is part of the saved state.
@@ -100,5 +103,5 @@ constexpr const char* contactSumNames[]   = { MCA_CONTACT_SUMS(MCA_NUMBER, MCA_V
 #undef MCA_VECTOR
 #undef MCA_NUMBER
 /// Vectors that the solver keeps beside these rows, in the order of Solver::archive().
-constexpr const char* solverVectorNames = "accountForce.volX, accountForce.volY, accountForce.visX, accountForce.visY, searchX, searchY, tiedVx, tiedVy, tiedW";
+constexpr const char* solverVectorNames = MCA_SOLVER_VECTORS;
 }

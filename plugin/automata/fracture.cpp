@@ -19,7 +19,10 @@ double Solver::contactEnergyAt(size_t i, double Jc) const
 template <class F> void Solver::eachBreaking(F&& f) const
 {
 	const Store& S   = store;
-	const auto   end = [&](size_t i, int k) { return LinkEnd { S.criterion[i], S.s[linkSlot(i, k)], S.J[i], S.mean[i], S.strength[i] }; };
+	const auto   end = [&](size_t i, int k) {
+		const double normal = normalStress(S.stressAt(linkSlot(i, k)), S.between(i, size_t(S.neighbour[linkSlot(i, k)])));
+		return LinkEnd { S.criterion[i], normal, S.J[i], S.mean[i], S.strength[i] };
+	};
 	for (int32_t b : awake) {
 		const Material& m = S.materialOf(S.blocks[b]);
 		if (!m.fracture.active()) continue;
@@ -78,9 +81,9 @@ void Solver::unlink(size_t i, int k)
 	Store&       S      = store;
 	const size_t at     = linkSlot(i, k), j = size_t(S.neighbour[at]);
 	const double weight = linkWeight(S.flags[i], k), twoG = S.pairTwoG(S.speciesOf(i), j, arm(S.diameter[i], S.diameter[j]));
-	if (options.account) sums.fracture += lostAtBreak(S.diameter[i], weight, pairEnergy(S.s[at], S.tau[at], S.J[i], twoG));
-	S.s[at] *= weight, S.tau[at] *= weight;
-	S.flags[i] = withoutTriangles(S.flags[i] & ~(1 << k | 1 << (halfShift + k))) | exposedBit;
+	if (options.account) sums.fracture += lostAtBreak(S.diameter[i], weight, pairEnergy(S.stressAt(at), S.J[i], twoG));
+	S.setStress(at, scaled(S.stressAt(at), weight));
+	S.flags[i] = withoutTriangles(S.flags[i] & ~(Flags(1) << k | Flags(1) << (halfShift + k))) | exposedBit;
 	S.blocks[i / blockSize].intact = false;
 }
 
@@ -92,9 +95,9 @@ double Solver::determinantNow(size_t i) const
 	for (int k = 0; k < nLinks; k++)
 		if (holds(S.flags[i], k)) {
 			const int32_t j = S.neighbour[linkSlot(i, k)];
-			addDyad(sum, outlineTable.of(trianglesIn(S.flags[i]), k), S.between(i, j));
+			addMeasured(sum, S.flags[i], k, S.between(i, j));
 		}
-	return linkDeterminant(sum, perArea(S.diameter[i]));
+	return linkDeterminant(sum, Lattice::perVolume(S.diameter[i]));
 }
 
 // Affine rule: the remaining links measure the same homogeneous deformation; only the factor in front of det F is set anew, so that J goes on.
@@ -159,7 +162,7 @@ void Solver::settleVolumes()
 		if (heat && affine) S.heat[i] += contactEnergyAt(i, Jc) / (S.cell[i] * m.eos.rho0);
 		scaleStresses(i, Jc / S.J[i]); // stresses go on
 		for (size_t c = first; c < last; c++)
-			C.s[c] *= Jc / S.J[i], C.tau[c] *= Jc / S.J[i];
+			setSide(C, c, scaled(sideOf(C, c), Jc / S.J[i]));
 		S.J[i] = Jc;
 		if (heat && affine) S.P[i] = S.mean[i] = pressure(m.eos, Jc - 1.); // that of its contacts
 	}
@@ -170,6 +173,6 @@ void Solver::settleVolumes()
 void Solver::scaleStresses(size_t i, double ratio)
 {
 	for (int k = 0; k < nLinks; k++)
-		store.s[linkSlot(i, k)] *= ratio, store.tau[linkSlot(i, k)] *= ratio;
+		store.setStress(linkSlot(i, k), scaled(store.stressAt(linkSlot(i, k)), ratio));
 }
 }

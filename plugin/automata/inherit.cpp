@@ -38,7 +38,7 @@ void Solver::inheritLinks(const Solver& old)
 	for (size_t i = 0; i < S.size(); i++) {
 		const int64_t o = S.id[i] < 0 ? -1 : indexIn(old, S.id[i]);
 		if (o < 0) continue;
-		S.flags[i] |= O.flags[o] & int32_t(exposedBit | outlineBits);
+		S.flags[i] |= O.flags[o] & Flags(exposedBit | outlineBits);
 		S.invN[i] = O.invN[o];
 		for (int k = 0; k < nLinks; k++) {
 			const size_t at = linkSlot(i, k), from = linkSlot(o, k);
@@ -49,7 +49,7 @@ void Solver::inheritLinks(const Solver& old)
 				S.flags[i] = withoutTriangles(S.flags[i]) | exposedBit;
 				continue;
 			}
-			S.neighbour[at] = int32_t(j), S.s[at] = O.s[from], S.tau[at] = O.tau[from];
+			S.neighbour[at] = int32_t(j), S.setStress(at, O.stressAt(from));
 			S.flags[i] |= O.flags[o] & slotBits(k);
 		}
 	}
@@ -64,7 +64,7 @@ void Solver::inheritTied(const Solver& old)
 		const int64_t i = indexIn(old, O.id[o]) < 0 ? -1 : indexOf(O.id[o]);
 		if (i < 0) throw Error("automaton " + std::to_string(O.id[o]) + " is tied to a grid; it cannot be erased.");
 		S.flags[i] |= tiedBit;
-		S.perMass.set(i, O.perMass.at(o)), S.perInertia[i] = O.perInertia[o];
+		S.perMass.set(i, O.perMass.at(o)), setTurn(S.perInertia, i, turnAt(O.perInertia, o));
 		tied.push_back(int32_t(i));
 	}
 	tiedVelocity = old.tiedVelocity, tiedSpin = old.tiedSpin;
@@ -84,8 +84,8 @@ void Solver::inheritContacts(const Solver& old)
 			const int64_t j    = indexIn(old, mate) < 0 ? -1 : indexOf(mate);
 			if (j < 0) continue;
 			contacts.owner.push_back(int32_t(i)), contacts.other.push_back(int32_t(j));
-			contacts.s.push_back(old.contacts.s[c]), contacts.tau.push_back(old.contacts.tau[c]), contacts.rest.push_back(old.contacts.rest[c]),
-				contacts.twoG.push_back(old.contacts.twoG[c]);
+			pushSide(contacts, sideOf(old.contacts, c));
+			contacts.rest.push_back(old.contacts.rest[c]), contacts.twoG.push_back(old.contacts.twoG[c]);
 		}
 		if (contacts.size() == first) continue;
 		if (contacts.rowBegin.empty()) contacts.rowBegin.push_back(0);
@@ -102,9 +102,10 @@ void Solver::inheritState(const Solver& old)
 	for (size_t i = 0; i < S.size(); i++) {
 		const int64_t o = S.id[i] < 0 ? -1 : indexIn(old, S.id[i]);
 		if (o < 0) continue;
-		S.J[i] = O.J[o], S.P[i] = O.P[o], S.mean[i] = O.mean[o], S.viscous[i] = O.viscous[o], S.h[i] = O.h[o], S.szz[i] = O.szz[o],
+		S.J[i] = O.J[o], S.P[i] = O.P[o], S.mean[i] = O.mean[o], S.viscous[i] = O.viscous[o], S.h[i] = O.h[o],
 		S.eqps[i] = O.eqps[o], S.dTheta[i] = O.dTheta[o];
-		S.temperature[i] = O.temperature[o], S.strength[i] = O.strength[o], S.criterion[i] = O.criterion[o], S.angle[i] = O.angle[o];
+		S.temperature[i] = O.temperature[o], S.strength[i] = O.strength[o], S.criterion[i] = O.criterion[o];
+		setTurn(S.angle, i, turnAt(O.angle, o)), inheritStress(S, i, O, size_t(o));
 		if (!S.heat.empty() && !O.heat.empty()) S.heat[i] = O.heat[o];
 		bool same = trianglesIn(S.flags[i]) == trianglesIn(O.flags[o]);
 		for (int k = 0; k < nLinks; k++) {

@@ -7,24 +7,13 @@
 namespace mca::automata {
 namespace {
 	constexpr double largestForce = 1e300; // below it: finite, and no NaN
-	/// Velocities of a block after the kick.
-	struct Kicked {
-		alignas(64) double velocity[dim][blockSize], omega[blockSize];
-		Planes<const double> planes() const
-		{
-			Planes<const double> p;
-			for (int c = 0; c < dim; c++)
-				p.plane[c] = velocity[c];
-			return p;
-		}
-	};
 	/// Forces from outside on automaton i.
 	struct Outside {
-		Vec<double> force;
-		double      torque;
+		Vec<double>  force;
+		Turn<double> torque;
 	};
-	Outside outside(const Store& S, size_t i) { return S.outside.empty() ? Outside {} : Outside { S.outside.at(i), S.outsideTorque[i] }; }
-	bool    finite(Vec<double> force, double torque) { return sumOfMagnitudes(force) + std::fabs(torque) < largestForce; }
+	Outside outside(const Store& S, size_t i) { return S.outside.empty() ? Outside {} : Outside { S.outside.at(i), turnAt(S.outsideTorque, i) }; }
+	bool    finite(Vec<double> force, Turn<double> torque) { return sumOfMagnitudes(force) + sumOfMagnitudes(torque) < largestForce; }
 
 	/// One direction of the kick. force, outside (may be null), damping (may be null: none): of the lanes; inverse: 1/mass or 0.
 	MCA_INLINE void
@@ -38,12 +27,14 @@ namespace {
 			to[l]          = damping ? (free - b * v[l]) / (1. + b) : free;
 		}
 	}
-	void kickBlock(const Store& S, size_t base, double kick, Kicked& to)
+	template <class Kicked> void kickBlock(const Store& S, size_t base, double kick, Kicked& to)
 	{
 		const auto given = [&](const std::vector<double>& v) { return v.empty() ? nullptr : v.data() + base; };
 		for (int c = 0; c < dim; c++)
 			kickLanes(&S.velocity[c][base], &S.force[c][base], given(S.outside[c]), given(S.damp[c]), &S.perMass[c][base], kick, to.velocity[c]);
-		kickLanes(&S.omega[base], &S.torque[base], given(S.outsideTorque), nullptr, &S.perInertia[base], kick, to.omega);
+		for (int c = 0; c < turns; c++)
+			kickLanes(&turnPlane(S.omega, c)[base], &turnPlane(S.torque, c)[base], given(turnPlane(S.outsideTorque, c)), nullptr,
+			          &turnPlane(S.perInertia, c)[base], kick, to.omega[c]);
 	}
 	/// One direction of the drift: new velocities v, and positions x by them; returns the largest.
 	MCA_INLINE double driftLanes(const double* to, double dt, double* v, double* x)
@@ -58,14 +49,33 @@ namespace {
 		return most;
 	}
 	/// Returns whether anything moves.
-	bool driftBlock(Store& S, size_t base, double dt, const Kicked& to)
+	template <class Kicked> bool driftBlock(Store& S, size_t base, double dt, const Kicked& to)
 	{
-		double most = driftLanes(to.omega, dt, &S.omega[base], &S.angle[base]);
+		double most = 0;
+		for (int c = 0; c < turns; c++)
+			most = max(most, driftLanes(to.omega[c], dt, &turnPlane(S.omega, c)[base], &turnPlane(S.angle, c)[base]));
 		for (int c = 0; c < dim; c++)
 			most = max(most, driftLanes(to.velocity[c], dt, &S.velocity[c][base], &S.position[c][base]));
 		return most > 0;
 	}
 }
+
+/// Velocities of a block after the kick.
+struct Solver::Kicked {
+	alignas(64) double velocity[dim][blockSize], omega[turns][blockSize];
+	Vec<double> velocityAt(int l) const
+	{
+		Vec<double> v;
+		for (int c = 0; c < dim; c++) v[c] = velocity[c][l];
+		return v;
+	}
+	Turn<double> omegaAt(int l) const
+	{
+		Turn<double> w;
+		for (int c = 0; c < turns; c++) turnComponent(w, c) = omega[c][l];
+		return w;
+	}
+};
 
 /// Before anything moves: a force that is not finite must not get into the state.
 void Solver::checkForces()
@@ -79,16 +89,16 @@ void Solver::checkForces()
 		int          bad  = 0;
 		const size_t base = b * blockSize;
 		for (int l = 0; l < blockSize; l++)
-			bad += finite(force.at(base + l), S.torque[base + l]) ? 0 : 1;
+			bad += finite(force.at(base + l), turnAt(S.torque, base + l)) ? 0 : 1;
 		for (int l = 0; ext && l < blockSize; l++)
-			bad += finite(given.at(base + l), S.outsideTorque[base + l]) ? 0 : 1;
+			bad += finite(given.at(base + l), turnAt(S.outsideTorque, base + l)) ? 0 : 1;
 		if (bad) results[b].bad = int64_t(base);
 	});
 	for (int32_t b : awake)
 		for (int l = 0; l < blockSize && results[b].bad >= 0; l++) {
 			const size_t  i = size_t(b) * blockSize + l;
 			const Outside e = outside(S, i);
-			if (finite(S.force.at(i), S.torque[i]) && finite(e.force, e.torque)) continue;
+			if (finite(S.force.at(i), turnAt(S.torque, i)) && finite(e.force, e.torque)) continue;
 			std::ostringstream s;
 			s << "automaton " << S.id[i] << ": force " << S.force.at(i) << " N/m, from outside " << e.force << " N/m, in step " << counters.steps
 			  << " is not finite. Positions are those before the step; save and look, or use a smaller time step.";
@@ -106,22 +116,22 @@ Solver::ForceShares Solver::sharesOf(size_t i) const
 }
 
 /// Work of a block's forces in the kick to these velocities; after: share of the kick that comes after the time of the forces.
-void Solver::bookBlock(size_t b, double kick, double after, const Planes<const double>& newVelocity, const double* newOmega)
+void Solver::bookBlock(size_t b, double kick, double after, const Kicked& to)
 {
 	const Store& S    = store;
 	const bool   damp = !S.damp.empty();
 	StepWork     p;
 	for (int l = 0; l < blockSize; l++) {
 		const size_t      i = b * blockSize + l;
-		const Vec<double> v = newVelocity.at(l), before = S.velocity.at(i), F = S.force.at(i), damping = damp ? S.damp.at(i) : Vec<double> {};
-		const double      w = newOmega[l], T = S.torque[i];
+		const Vec<double> v = to.velocityAt(l), before = S.velocity.at(i), F = S.force.at(i), damping = damp ? S.damp.at(i) : Vec<double> {};
+		const Turn<double> w = to.omegaAt(l), spin = turnAt(S.omega, i), T = turnAt(S.torque, i);
 		const Outside     o = outside(S, i);
 		const ForceShares f = sharesOf(i);
 		const Vec<double> move = (before + v) * 0.5 * kick;
-		const double      turn = 0.5 * (S.omega[i] + w) * kick;
+		const Turn<double> turn = (spin + w) * 0.5 * kick;
 		p.volumetric += plainDot(f.volumetric, move);
 		p.viscous += plainDot(f.viscous, move);
-		p.deviatoric += plainDot(F - f.volumetric - f.viscous, move) + T * turn;
+		p.deviatoric += plainDot(F - f.volumetric - f.viscous, move) + plainDot(T, turn);
 		// what the outside adds: given forces, and the reaction that keeps blocked degrees of freedom at their velocity
 		const Vec<double> all = F + o.force;
 		Vec<double>       e, damped;
@@ -130,16 +140,21 @@ void Solver::bookBlock(size_t b, double kick, double after, const Planes<const d
 			e[c] = free ? all[c] - F[c] : -F[c], damped[c] = free ? damping[c] * move[c] : 0.;
 			p.impulse[c] += e[c] * kick - damped[c];
 		}
-		const double et = S.perInertia[i] > 0 ? T + o.torque - T : -T;
-		p.external += plainDot(e, move) + et * turn;
+		const Turn<double> torques = T + o.torque;
+		Turn<double>       et;
+		for (int c = 0; c < turns; c++) {
+			const double own = turnComponent(T, c);
+			turnComponent(et, c) = turnPlane(S.perInertia, c)[i] > 0 ? turnComponent(torques, c) - own : -own;
+		}
+		p.external += plainDot(e, move) + plainDot(et, turn);
 		p.boundary += plainDot(damped, move) / kick;
 		const Vec<double> centre = v - (v - before) * after;
-		const double      cw     = w - after * (w - S.omega[i]);
+		const Turn<double> cw     = w - (w - spin) * after;
 		double            gained = plainSquare(centre);
 		for (int c = 0; c < dim; c++)
 			gained -= v[c] * v[c];
 		if (!(S.flags[i] & tiedBit)) p.centre += 0.5 * S.mass[i] * gained;
-		if (!(S.flags[i] & tiedBit) || S.perInertia[i] > 0) p.centre += 0.5 * S.inertia[i] * (cw * cw - w * w);
+		if (!(S.flags[i] & tiedBit) || turnsFreely(i)) p.centre += 0.5 * S.inertia[i] * (plainSquare(cw) - plainSquare(w));
 	}
 	stepWorks[b] = p;
 }
@@ -157,9 +172,10 @@ void Solver::bookStep(double kick, double after)
 		const size_t      i = tied[t];
 		const ForceShares f = sharesOf(i);
 		const Vec<double> move       = (tiedVelocity.at(t) - S.velocity.at(i)) * 0.5 * kick;
-		const double      turn       = S.perInertia[i] > 0 ? 0. : 0.5 * (tiedSpin[t] - S.omega[i]) * kick; // a free spin is booked above
+		// a free spin is booked above
+		const Turn<double> turn = turnsFreely(i) ? Turn<double> {} : (turnAt(tiedSpin, t) - turnAt(S.omega, i)) * 0.5 * kick;
 		const double      volumetric = plainDot(f.volumetric, move), viscosity = plainDot(f.viscous, move),
-			     all = plainDot(S.force.at(i), move) + S.torque[i] * turn;
+			     all = plainDot(S.force.at(i), move) + plainDot(turnAt(S.torque, i), turn);
 		sums.bookedVolumetric += volumetric, sums.bookedViscous += viscosity, sums.bookedDeviatoric += all - volumetric - viscosity,
 			sums.external -= all;
 	}
@@ -182,7 +198,7 @@ void Solver::integrate(double dt)
 	eachAwake([&](size_t b) {
 		Kicked to;
 		kickBlock(store, b * blockSize, span, to);
-		if (options.account) bookBlock(b, span, after, to.planes(), to.omega);
+		if (options.account) bookBlock(b, span, after, to);
 		if (driftBlock(store, b * blockSize, dt, to)) store.blocks[b].moving = true;
 	});
 	if (options.account) bookStep(span, after);

@@ -28,10 +28,10 @@ struct BlockWork {
 struct Extra {
 	double        perMove     = 0;       ///< 1/length of the last move [1/s]; 0: none yet
 	const double* contactSum  = nullptr; ///< per automaton: volume terms of its contacts
-	const double* contactSq   = nullptr; ///< per automaton: s^2 + tau^2 of its contacts [Pa2]
+	const double* contactSq   = nullptr; ///< per automaton: squares of the stresses of its contacts [Pa2]
 	const double* contactOld  = nullptr; ///< account: products of the stresses before the step and the trial stresses
 	double*       scale       = nullptr; ///< per automaton: M of the radial return, for its contacts
-	const double*        contactT     = nullptr; ///< per automaton: torques of its contacts [N]
+	const double*        contactT[turns] = {};   ///< per automaton: torques of its contacts [N]
 	Planes<const double> contactForce = {};      ///< and their forces [N/m]
 	bool                 account      = false;   ///< whether the shares below are wanted
 	Planes<double>       volumetric = {}, viscous = {}; ///< account: shares of the force

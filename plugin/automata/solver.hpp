@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The automata solver: movable cellular automata in plane strain on flat arrays. Knows nothing of YADE.
+// The automata solver: movable cellular automata on flat arrays, in plane strain or in space (kernels/dimension.hpp). Knows nothing of YADE.
 //   solver.build(...); loop { solver.computeForces(); solver.integrate(dt); }
 // Leapfrog: positions at whole steps, velocities at half steps. computeForces() gives the forces at the present positions.
 #pragma once
@@ -22,25 +22,27 @@ struct Options {
 
 constexpr double nearCell = 4; ///< size of the cells in which displacements since a search are compared [diameters]
 
-/// One automaton as the caller gives it. Plane strain, per unit thickness, SI units.
+/// One automaton as the caller gives it. SI units, in plane strain per unit thickness.
 struct Automaton {
 	Vec<double> position {}, velocity {};
-	double      omega = 0, angle = 0;
+	Turn<double> omega {}, angle {};
 	double  mass = 0, inertia = 0, diameter = 0, weight = 1, strength = 1;
 	double  eqps = 0;
 	double  temperature = 0; ///< [K]; 0: the material's reference temperature
 	int32_t material = 0, id = 0, group = 0;
 	Vec<bool>   free  = everyWay(); ///< per direction: moves as forces say
-	bool        freeR = true;
+	Turn<bool>  freeR = everyTurn();
 	int         triangles = 0; ///< of the packing that it shall stand for, to end at an outline (5g); 0: what its mass says
 	bool    isNew = false; ///< build with an old solver: another automaton than the one that had this number there
 };
 
 /// What a loop of its own (YADE's) keeps of an automaton's links, see Solver::knowing().
 struct LinkRecord {
-	int32_t id = 0, flags = 0; ///< Flag bits
-	int32_t partner[nLinks] = { -1, -1, -1, -1, -1, -1 }; ///< caller's numbers; -1: none
+	int32_t id = 0;
+	Flags   flags = 0;       ///< Flag bits
+	int32_t partner[nLinks]; ///< caller's numbers; -1: none
 	double  invN = 1. / nLinks;
+	LinkRecord() { std::fill(partner, partner + nLinks, -1); }
 };
 
 /// Energies [J/m]; independent ones from state functions and each dissipation's own increments, booked ones from forces and velocities.
@@ -53,7 +55,7 @@ struct Account {
 	double centre = 0; ///< velocities stand half a step after stresses: kinetic energy, work from outside and of viscous forces then, minus now
 	double kineticStart = 0, heated = 0; ///< heated: dissipation that stands in the internal energy of Mie-Grueneisen materials
 	Vec<double> momentum {};                  ///< [N s/m]
-	double      angular = 0;                  ///< angular momentum about the origin [N s]
+	Turn<double> angular {};                  ///< angular momentum about the origin [N s]
 	Vec<double> impulse {};                   ///< of external forces, driven and viscous boundaries [N s/m]
 	/// kinetic energy gained minus all work booked: round-off
 	double bookedError() const { return kinetic - kineticStart - bookedVolumetric - bookedDeviatoric - bookedViscous - external + boundary; }
@@ -88,14 +90,14 @@ public:
 	double criticalStep() const { return dtLimit; }
 
 	/// External force [N/m] and torque [N] of automaton i for the next integrate().
-	void addForce(size_t i, Vec<double> force, double torque);
+	void addForce(size_t i, Vec<double> force, Turn<double> torque);
 	void clearForces();
 	/// Viscous (transmitting) boundary: force -b v, b = rho c A [kg/(m s)] per direction.
 	void setDamping(size_t i, Vec<double> b);
 	/// Automaton i is carried by others from now on: it keeps no mass of its own in the sums and moves with the velocity it is told.
 	/// freeSpin: its rotation stays its own. Returns its place t in the order of the calls.
 	size_t tie(size_t i, bool freeSpin = false);
-	void   setTiedVelocity(size_t i, Vec<double> velocity, double omega);
+	void   setTiedVelocity(size_t i, Vec<double> velocity, Turn<double> omega);
 	/// Time [s] over which the forces of a step of dt act on the velocities: half of the step before and half of this one.
 	double kick(double dt) const { return lastDt > 0 ? 0.5 * (lastDt + dt) : dt; }
 	/// Place of the caller's number in the arrays, or -1. Changes with every sort.
@@ -114,6 +116,13 @@ public:
 	void moved();
 	/// The next computeForces() searches contacts anew: their range or the groups have changed.
 	void searchAnew() { searchDue = true; }
+	/// Whether the rotation of automaton i is its own, about some axis.
+	bool turnsFreely(size_t i) const
+	{
+		bool some = false;
+		for (int c = 0; c < turns; c++) some |= turnPlane(store.perInertia, c)[i] > 0;
+		return some;
+	}
 	/// Automata carried by others.
 	size_t tiedCount() const { return tied.size(); }
 	/// Sum of the volume terms of the contacts of automaton i [-].
@@ -140,7 +149,7 @@ private:
 	struct Near { ///< automata to be linked to one
 		int     count = 0;
 		int32_t other[nLinks];
-		double  angle[nLinks];
+		Lattice::Bearing bearing[nLinks];
 	};
 	void   makeLinks(const Solver* old);
 	void   makeOutlines(const Solver* old);
@@ -151,6 +160,7 @@ private:
 	double slots(size_t i) const;
 	void   dropOutside(size_t i);
 	void   placeLinks(const std::vector<Near>& near, const Solver* old);
+	void   checkPlaces() const;
 	/// Place of a number in the old solver, -1 when that was another automaton or there is none.
 	int64_t indexIn(const Solver& old, int32_t id) const { return size_t(id) < isNew.size() && isNew[size_t(id)] ? -1 : old.indexOf(id); }
 	void   inheritLinks(const Solver& old);
@@ -192,7 +202,8 @@ private:
 	};
 	void        checkForces();
 	ForceShares sharesOf(size_t i) const;
-	void                    bookBlock(size_t b, double kick, double after, const Planes<const double>& velocity, const double* omega);
+	struct Kicked;
+	void        bookBlock(size_t b, double kick, double after, const Kicked& to);
 	void        bookStep(double kick, double after);
 	void   unlink(size_t i, int k);
 	double coldEnergyAt(size_t i, double J) const;
@@ -237,7 +248,7 @@ private:
 	std::vector<int32_t>     awake;
 	std::vector<int32_t>     tied;
 	Vectors                                  tiedVelocity; ///< before the present step
-	std::vector<double>                      tiedSpin;     ///< before the present step
+	Turns                                    tiedSpin;     ///< before the present step
 	double                   lastDt = 0, lastMove = 0, dtLimit = 0, contactSpeed2 = 0;
 	bool                     topologyChanged = true; ///< the list of awake blocks is out of date
 	bool                     searchDue       = false;

@@ -81,7 +81,8 @@ namespace {
 		}
 	};
 	// truth values and choices one by one: in raw bytes they could be anything
-#define MCA_EACH(...) each(#__VA_ARGS__, __VA_ARGS__)
+#define MCA_TEXT(...) #__VA_ARGS__
+#define MCA_EACH(...) each(MCA_TEXT(__VA_ARGS__), __VA_ARGS__)
 	template <class F> struct Fields {
 		F& f;
 		template <class T> std::enable_if_t<std::is_arithmetic_v<T>> operator()(T& v)
@@ -135,7 +136,7 @@ template <class F> void Solver::archive(F&& to)
 		to.names(name), to.names(" ");
 	store.eachArray(f);
 	contacts.eachArray(f);
-	f.MCA_EACH(store.neighbour, store.s, store.tau, store.blocks, store.species, store.materials, contacts.rowOwner, contacts.rowBegin);
+	f.MCA_EACH(store.neighbour, MCA_LINK_STRESSES, store.blocks, store.species, store.materials, contacts.rowOwner, contacts.rowBegin);
 	for (auto& name : contactSumNames)
 		to.names(&name == contactSumNames ? "scratch." : ", scratch."), to.names(name);
 	scratch.eachArray(f);
@@ -236,15 +237,12 @@ void Solver::sortInSpace()
 	S.eachArray(permute);
 	scratch.eachArray(permute);
 	eachPlane([&](auto& v) { permute(v, Presence::whenUsed); }, accountForce.volumetric, accountForce.viscous);
-	auto permuteLinks = [&](auto& v, auto map) {
-		auto old = v;
-		for (size_t i = 0; i < n; i++)
-			for (int k = 0; k < nLinks; k++)
-				v[linkSlot(i, k)] = map(old[linkSlot(source[i], k)]);
-	};
-	permuteLinks(S.neighbour, [&](int32_t j) { return target[j]; });
-	permuteLinks(S.s, [](double v) { return v; });
-	permuteLinks(S.tau, [](double v) { return v; });
+	const std::vector<int32_t> others = S.neighbour;
+	for (size_t i = 0; i < n; i++)
+		for (int k = 0; k < nLinks; k++) S.neighbour[linkSlot(i, k)] = target[others[linkSlot(source[i], k)]];
+	LinkStresses before = S;
+	for (size_t i = 0; i < n; i++)
+		for (int k = 0; k < nLinks; k++) S.setStress(linkSlot(i, k), before.stressAt(linkSlot(source[i], k)));
 	for (auto v : { &contacts.owner, &contacts.other, &contacts.rowOwner, &tied })
 		for (auto& i : *v)
 			i = target[i];

@@ -66,7 +66,8 @@ Extra Solver::extra()
 	X.perMove = lastMove > 0 ? 1. / lastMove : 0.;
 	if (contacts.size())
 		X.contactSum = scratch.sum.data(), X.contactSq = scratch.square.data(), X.contactOld = scratch.old.data(), X.scale = scratch.scale.data(),
-		X.contactForce = std::as_const(scratch.force).planes(), X.contactT = scratch.torque.data();
+		X.contactForce = std::as_const(scratch.force).planes();
+	for (int c = 0; contacts.size() && c < turns; c++) X.contactT[c] = turnPlane(scratch.torque, c).data();
 	if (!options.account) return X;
 	accountForce.volumetric.resize(store.size()), accountForce.viscous.resize(store.size());
 	X.account = true, X.volumetric = accountForce.volumetric.planes(), X.viscous = accountForce.viscous.planes();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // What the automata solver keeps: flat arrays, one entry per automaton, in blocks of 64 that hold one species (material and diameter) each,
-// ordered in space. The six links of an automaton are planes of 64 inside its block; contacts are a separate list, since few automata have any.
+// ordered in space. The links of an automaton are planes of 64 inside its block; contacts are a separate list, since few automata have any.
 #pragma once
 #include "../kernels/automaton/contact.hpp"
 #include "../kernels/automaton/force.hpp"
@@ -8,6 +8,7 @@
 #include "../kernels/automaton/links.hpp"
 #include "../kernels/automaton/outline.hpp"
 #include "fields.hpp"
+#include "sides.hpp"
 #include "vectors.hpp"
 #include <algorithm>
 #include <cstdint>
@@ -15,12 +16,7 @@
 
 namespace mca::automata {
 
-constexpr int blockSize = 64;
-constexpr int nodeSize = 8, pushSize = tensorSize; ///< numbers of the records that neighbours read
-/// Places in a node record, behind position and velocity.
-constexpr int spinAt = motionSize, dilationAt = motionSize + 1, viscousShareAt = motionSize + 2;
-/// place of link k of automaton i in the link arrays
-inline size_t linkSlot(size_t i, int k) { return ((i / blockSize) * nLinks + k) * blockSize + i % blockSize; }
+constexpr int pushSize  = tensorSize; ///< numbers of the record of pushes that neighbours read
 
 struct Species {
 	int    material = 0;
@@ -30,7 +26,7 @@ struct Species {
 struct Block {
 	int32_t species = 0;
 	int32_t count   = 0;     ///< automata in it; lanes above are padding
-	bool    intact  = false; ///< every lane holds all six links with full weight, and no outline is near
+	bool    intact  = false; ///< every lane holds all links with full weight, and no outline is near
 	bool    outline = false; ///< some automaton, or one that it is linked to, ends at an outline
 	bool    mixed   = false; ///< some link leads to another species
 	bool    contact = false; ///< some automaton has contacts
@@ -39,7 +35,7 @@ struct Block {
 	bool    ringsAwake = false; ///< the blocks around it have been woken
 };
 
-struct Store {
+struct Store : LinkStresses {
 #define MCA_NUMBER(name, type, presence, shown, text) std::vector<type> name;
 #define MCA_VECTOR(name, presence, scripts, text, ...) Vectors name;
 	MCA_AUTOMATON_FIELDS(MCA_NUMBER, MCA_VECTOR)
@@ -47,19 +43,9 @@ struct Store {
 #undef MCA_NUMBER
 	// links: nLinks planes per block
 	std::vector<int32_t> neighbour; ///< automaton at the other end, itself where there is none; there the same link is Lattice::opposite(k)
-	std::vector<double>  s, tau;                         ///< J times normal and shear pair stress of this side [Pa]
 	// records that neighbours read; rebuilt in every step, so not part of the saved state
-	std::vector<double> node; ///< 8 per automaton: position, velocity, omega, dTheta, share of the viscosity in push, 0
+	std::vector<double> node; ///< nodeSize per automaton: position, velocity, omega, dTheta, share of the viscosity in push, 0
 	std::vector<double> push; ///< a tensor per automaton, affine rule: link k is pushed by T e_k [N/m]
-	/// Copies motion into the records of a block.
-	void packBlock(size_t b)
-	{
-		const auto x = position.planes(), v = velocity.planes();
-		for (size_t i = b * blockSize; i < (b + 1) * blockSize; i += lanes) {
-			scatter(node.data() + i * nodeSize, nodeSize, load(x, i), load(v, i));
-			scatter4(node.data() + i * nodeSize + spinAt, nodeSize, load(&omega[i]), load(&dTheta[i]), v8 {}, v8 {});
-		}
-	}
 	/// All records anew: after building, sorting, loading.
 	void packAll()
 	{
@@ -68,6 +54,8 @@ struct Store {
 		for (size_t b = 0; b < blocks.size(); b++)
 			packBlock(b);
 	}
+	/// Copies motion into the records of a block.
+	void packBlock(size_t b);
 	std::vector<Block>   blocks;
 	std::vector<Species> species;
 	std::vector<Material> materials;
@@ -148,4 +136,9 @@ struct Contacts {
 		});
 	}
 };
+
+inline void Store::packBlock(size_t b)
+{
+	for (size_t i = b * blockSize; i < (b + 1) * blockSize; i += lanes) packRecords(*this, node.data() + i * nodeSize, i);
+}
 }

@@ -6,7 +6,7 @@
 
 namespace mca::automata {
 
-struct BlockView {
+struct BlockBase {
 	Store&          store;
 	const size_t    base;
 	const Block&    block    = store.blocks[base / blockSize];
@@ -17,22 +17,20 @@ struct BlockView {
 	const Planes<const double> positionOfAll = std::as_const(store.position).planes(), position = std::as_const(store.position).planes(base),
 				   velocity = std::as_const(store.velocity).planes(base);
 	const Planes<double> force          = store.force.planes(base);
-	const double *       omega = at(store.omega), *cell = at(store.cell), *invN = at(store.invN), *strength = at(store.strength),
+	const double *       cell = at(store.cell), *invN = at(store.invN), *strength = at(store.strength),
 		     *diameterOfAll = store.diameter.data(), *node = store.node.data(), *pushOfAll = store.push.data();
 	double *J = at(store.J), *dTheta = at(store.dTheta), *P = at(store.P), *mean = at(store.mean), *viscous = at(store.viscous), *h = at(store.h),
-	       *factor = at(store.factor), *rest = at(store.rest), *szz = at(store.szz), *eqps = at(store.eqps), *temperature = at(store.temperature),
-	       *heat = at(store.heat), *criterion = at(store.criterion), *s = at(store.s, nLinks), *tau = at(store.tau, nLinks),
-	       *record = at(store.node, nodeSize), *push = at(store.push, pushSize), *torque = at(store.torque);
-	const int32_t *flags = at(store.flags), *neighbour = at(store.neighbour, nLinks), *flagsOfAll = store.flags.data();
-	BlockView(Store& S, size_t b)
+	       *factor = at(store.factor), *rest = at(store.rest), *eqps = at(store.eqps), *temperature = at(store.temperature),
+	       *heat = at(store.heat), *criterion = at(store.criterion), *record = at(store.node, nodeSize), *push = at(store.push, pushSize);
+	const Flags *  flags = at(store.flags), *flagsOfAll = store.flags.data();
+	const int32_t* neighbour = at(store.neighbour, nLinks);
+	BlockBase(Store& S, size_t b)
 		: store(S)
 		, base(b * blockSize)
 	{
 	}
 	/// Neighbours by link k of the eight automata from lane g on.
 	const int32_t* others(int k, int g) const { return neighbour + k * blockSize + g; }
-	/// s, tau of link k.
-	Pair<v8> stress(int k, int g) const { return { load(s + k * blockSize + g), load(tau + k * blockSize + g) }; }
 };
 
 /// Number of automata from which on their arrays are beyond the caches: a pass then asks for those of the next block while it computes this one.
@@ -49,28 +47,12 @@ MCA_INLINE void prefetchRecords(const Store& S, size_t b)
 	if (S.size() < prefetchFrom || b + 1 >= S.blocks.size()) return;
 	prefetch(S.node, b + 1, nodeSize), prefetch(S.neighbour, b + 1, nLinks);
 }
-/// What passes 2 and 3 read.
-MCA_INLINE void prefetchLinks(const Store& S, size_t b)
-{
-	if (S.size() < prefetchFrom || b + 1 >= S.blocks.size()) return;
-	prefetchRecords(S, b), prefetch(S.push, b + 1, pushSize), prefetch(S.s, b + 1, nLinks), prefetch(S.tau, b + 1, nLinks);
-}
-
 /// Positions of neighbours.
 MCA_INLINE Vec<v8> gatherPosition(const double* node, const int32_t* at)
 {
 	Vec<v8> r;
 	gather(node, nodeSize, at, r);
 	return r;
-}
-struct Motion {
-	Vec<v8> position, velocity;
-};
-MCA_INLINE Motion gatherMotion(const double* node, const int32_t* at)
-{
-	Motion m;
-	gather(node, nodeSize, at, m.position, m.velocity);
-	return m;
 }
 MCA_INLINE Tensor<v8> gatherPush(const double* push, const int32_t* at)
 {
@@ -93,20 +75,6 @@ template <bool intact> MCA_INLINE v8 weights(m8 flags, int k)
 	return choose<intact>(((flags >> (halfShift + k)) & 1) != 0, splat(intact ? 1. : 0.5), splat(1.));
 }
 
-/// Triangles of eight automata; at: their flags, one behind the other, or where they stand among those of all.
-struct EightTriangles {
-	alignas(32) int32_t of[lanes];
-	explicit EightTriangles(const int32_t* flags)
-	{
-		for (int l = 0; l < lanes; l++) of[l] = int32_t(trianglesIn(flags[l]));
-	}
-	EightTriangles(const int32_t* flagsOfAll, const int32_t* at)
-	{
-		for (int l = 0; l < lanes; l++) of[l] = int32_t(trianglesIn(flagsOfAll[at[l]]));
-	}
-	m8 any() const { return widen(of) != 0; }
-};
-
 /// f(b1, b2, ...) with these truth values as compile-time constants.
 template <class F> MCA_INLINE void choices(F&& f) { f(); }
 template <class F, class... More> MCA_INLINE void choices(F&& f, bool first, More... more)
@@ -115,3 +83,8 @@ template <class F, class... More> MCA_INLINE void choices(F&& f, bool first, Mor
 	else choices([&](auto... rest) { f(std::false_type {}, rest...); }, more...);
 }
 }
+#if MCA_DIM == 2
+#include "plane/view.hpp"
+#else
+#include "space/view.hpp"
+#endif

@@ -10,7 +10,8 @@ namespace {
 	{
 		const size_t   base = b * blockSize;
 		const double * J = S.J.data(), *eqps = S.eqps.data() + base, *factor = S.factor.data() + base;
-		const int32_t *flags = S.flags.data() + base, *nb = S.neighbour.data() + b * nLinks * blockSize;
+		const Flags*   flags = S.flags.data() + base;
+		const int32_t* nb    = S.neighbour.data() + b * nLinks * blockSize;
 		double         any = 0;
 #pragma omp simd reduction(max : any)
 		for (int l = 0; l < blockSize; l++) {

@@ -25,6 +25,12 @@ MCA_INLINE v8 load(const double* p)
 }
 MCA_INLINE void store(double* p, v8 a) { std::memcpy(p, &a, sizeof a); }
 MCA_INLINE m8   widen(const int32_t* p) { return m8 { p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7] }; }
+MCA_INLINE m8   widen(const int64_t* p)
+{
+	m8 r;
+	std::memcpy(&r, p, sizeof r);
+	return r;
+}
 MCA_INLINE v8   max(v8 a, v8 b) { return a > b ? a : b; }
 MCA_INLINE v8   min(v8 a, v8 b) { return a < b ? a : b; }
 MCA_INLINE v8   min(v8 a, double b) { return min(a, splat(b)); }

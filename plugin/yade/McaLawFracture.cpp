@@ -74,7 +74,7 @@ Real McaLaw::determinantNow(const Row& r) const
 		const Vector3r x = rows[size_t(r.link[k].other)].state->se3.position - r.state->se3.position;
 		addDyad(sum, mca::outlineTable.of(mca::trianglesIn(r.l->flags), k), vec(x));
 	}
-	return mca::linkDeterminant(sum, mca::perArea(r.d));
+	return mca::linkDeterminant(sum, mca::Lattice::perVolume(r.d));
 }
 
 // What the links had measured goes on as the rest state of what is left.

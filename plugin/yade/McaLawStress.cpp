@@ -123,7 +123,7 @@ void McaLaw::stress(Row& r)
 		const Real weight = mca::linkWeight(l.flags, k);
 		const auto before = old(s);
 		const Real dilation = dilationOf(s, affine ? mca::ofOwn : mca::ofBoth);
-		sums.add<true>(before, trial(r, s, before, dilation), dilation, weight, weight);
+		mca::add<true>(sums, before, trial(r, s, before, dilation), dilation, weight, weight);
 	}
 	sums.dilationLost = r.lost * l.dTheta * mca::ofOwn.own;
 	vector<Pair<Real>> held; // stresses of the contacts before the step

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Packings of automata in plane strain and the YADE bodies made of them.
+"""Packings of automata, in plane strain and in space, and the YADE bodies made of those in plane strain.
 
     >>> from yade_mca import packings
     >>> plate = packings.hexagonal(1e-3, packings.Rectangle((0, 0), (80e-3, 25e-3)), angle=0.5 * math.pi)
@@ -14,9 +14,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ._arguments import array, number, oneOf, whole
+from ._fcc import Ball, Box, Cylinder, SpacePacking, make
 from .outlines import Polygon, Predicate, Rectangle, asOutline, disc
 
 __all__ = ['Packing', 'PackingError', 'CellGeometry', 'cellGeometry', 'hexagonal', 'create', 'addBodies', 'resetStates', 'Polygon', 'Predicate', 'Rectangle', 'disc']
+__all__ += ['fcc', 'SpacePacking', 'Box', 'Cylinder', 'Ball']
 
 
 class PackingError(ValueError):
@@ -284,6 +286,19 @@ def _giveAway(table, lattice, positions, weight, keep):
 	weight[lost] = 0
 
 
+def fcc(spacing, shape, orientation=None, origin=None):
+	"""Face-centred cubic packing of `spacing` [m]: a SpacePacking of the automata whose centres are in `shape`, all of weight 1.
+
+	shape        Box, Cylinder, Ball, or a predicate of yade.pack
+	orientation  how the packing stands: None, the edges of the cubic cell along x, y, z; ((h, k, l), (h, k, l)), the directions of the packing that
+	             point along x and y, at right angles to each other; or a rotation (3, 3) whose rows are the axes of the cubic cell in x, y, z
+	origin       where an automaton stands, or would stand (x, y, z) [m]; default: the middle of the shape
+	The solver finds the packing whatever its orientation. It takes them in C++ so far; McaEngine holds bodies in plane strain only.
+	Raises PackingError for an argument that is out of range and when no automaton fits.
+	"""
+	return make(spacing, shape, orientation, origin, PackingError)
+
+
 _REFUSED = {
         ('square', 'cube', 'cubic', 'sc'):
                 'a square (cube, sc) arrangement has zero-energy modes: its discs turn like gear wheels without straining any pair, and the '
@@ -329,6 +344,8 @@ def addBodies(packing, material, velocity=(0., 0.), angularVelocity=0., mask=1, 
 	Raises PackingError for an argument that is not finite, out of range or of the wrong shape, before there is a body.
 	"""
 	from ._yade import scene, yadeClass
+	if isinstance(packing, SpacePacking):
+		raise PackingError('packing is one of space (fcc); McaEngine holds bodies in plane strain only: take hexagonal(). The solver of space is there in C++')
 	if not isinstance(packing, Packing):
 		raise PackingError('packing must be a Packing, as hexagonal() makes one; got %r' % (packing, ))
 	velocity = array('velocity', velocity, PackingError, ((2, ), (len(packing), 2)))

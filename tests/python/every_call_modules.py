@@ -20,6 +20,16 @@ def packing():
 	return packings.hexagonal(D, packings.Rectangle((0, 0), (4 * D, 3 * D)))
 
 
+def spacePacking():
+	from yade_mca import packings
+	return packings.fcc(D, ball())
+
+
+def ball():
+	from yade_mca import packings
+	return packings.Ball((0., 0., 0.), 2 * D)
+
+
 def rectangle():
 	from yade_mca import outlines
 	return outlines.Rectangle((0, 0), (4 * D, 3 * D))
@@ -70,7 +80,11 @@ GOOD = {
         'measure.rodMeasure.velocity': [(0., -90.), (0., -80.)], 'measure.speedAlong.velocity': [(0., -90.), (0., -80.)],
         'packings.resetStates.ids': bodies, 'packings.cellGeometry.name': 'hexagonal', 'packings.create.name': 'hexagonal', 'scenes.tiedPlate.largest': 3.,
         'materials.Material.flowStress.plasticStrain': 0.1, 'materials.Material.johnsonCookFractureStrain.triaxiality': 0.3,
-        'measure.momentumSettled.tolerance': 1e-3, 'outlines.Polygon.classify.radius': D
+        'measure.momentumSettled.tolerance': 1e-3, 'outlines.Polygon.classify.radius': D, 'packings.fcc.shape': ball,
+        'packings.fcc.origin': (0., 0., 0.), 'packings.fcc.orientation': ((1., 1., 1.), (1., -1., 0.)), 'packings.SpacePacking.translated.by': (D, 0., 0.),
+        'packings.Box.low': (0., 0., 0.), 'packings.Box.high': (D, D, D), 'packings.Cylinder.start': (0., 0., 0.), 'packings.Cylinder.end': (0., 0., D),
+        'packings.Ball.centre': (0., 0., 0.), 'packings.Box.inside.points': [(0., 0., 0.)], 'packings.Cylinder.inside.points': [(0., 0., 0.)],
+        'packings.Ball.inside.points': [(0., 0., 0.)]
 }
 
 
@@ -123,7 +137,7 @@ def targets(module):
 
 
 def ready(module, name, cls):
-	made = {'Packing': packing, 'Material': record, 'Scene': penetrationScene}
+	made = {'Packing': packing, 'SpacePacking': spacePacking, 'Material': record, 'Scene': penetrationScene}
 	return made.get(name) or (lambda: cls(**argumentsOf('%s.%s' % (module, name), cls)))
 
 

@@ -1,27 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Pair stresses of an automaton, its yield and the work that goes with both. Formulation, equations (7)-(11).
-// n = unit vector i -> j, r = x_j - x_i, t = n turned by +90 degrees; tension positive. Each side of a pair has its own stress, kept as J times it.
+// n = unit vector i -> j, r = x_j - x_i; tension positive. Each side of a pair has its own stress, kept as J times it. What it consists of: plane/pair.hpp and
+// space/pair.hpp.
 #pragma once
 #include "../lattice.hpp"
 #include "../material.hpp"
 
 namespace mca {
+inline namespace MCA_SPACE {
 
-/// Normal and shear part of a pair: stress [Pa], or strain increment [-].
-template <class T> struct Pair {
-	T normal, shear;
-};
-template <class T> MCA_INLINE T square(Pair<T> a) { return fma(a.normal, a.normal, a.shear * a.shear); }
-template <class T> MCA_INLINE T product(Pair<T> a, Pair<T> b) { return fma(a.normal, b.normal, a.shear * b.shear); }
-
-/// (7), (8): strain increments over the last step, at its middle. r now [m]; u = relative displacement of the step [m];
-/// spin = (omega_i q_i + omega_j q_j)/(q_i + q_j) dt [-], q = distance from centre to contact.
-template <class T> MCA_INLINE Pair<T> strainIncrement(Vec<T> r, Vec<T> u, T spin)
-{
-	const Vec<T> m   = fma(-0.5, u, r);
-	const T      inv = 1. / dot(m, m);
-	return { dot(m, u) * inv, cross(m, u) * inv - spin };
-}
 /// Shares of the dilations of two automata in the linear strain that a pair leaves out of its deviator [-].
 struct DilationShares {
 	double own, other;
@@ -31,23 +18,10 @@ constexpr DilationShares ofBoth { 1. / 6., 1. / 6. };
 /// A third of that of the side itself: links of the affine rule. What the stress of a side does with its automaton's volume stands in meanPressure() then, and
 /// the stiffness is symmetric everywhere, rims included.
 constexpr DilationShares ofOwn { 1. / 3., 0. };
-/// 2 tan(a/2) of a turn by a, to fifth order: what strainIncrement(), on the chord of the middle of the step, sees of it.
-template <class T> MCA_INLINE T chord(T a)
-{
-	const T q = a * a * (1. / 12.);
-	return fma(fma(q * 1.2, q, q), a, a);
-}
-/// Turn of a pair in a step by the spins of both [-]: arm of the first over the distance.
-MCA_INLINE double pairSpin(double omega, double other, double arm, double dt) { return chord(fma(omega, arm, other * (1. - arm)) * dt); }
 /// Linear strain that a pair leaves out of its deviator; own, other: dilation() of both automata [-].
 template <class T> MCA_INLINE T pairDilation(T own, T other, DilationShares share) { return fma(share.own, own, share.other * other); }
 /// 1/J of the step before, from J now and its dilation().
 template <class T> MCA_INLINE T perOldRatio(T dilation, T J) { return (2. + dilation) / ((2. - dilation) * J); }
-/// Stress of one side before yield; before: that of the last step.
-template <class T> MCA_INLINE Pair<T> trialStress(Pair<T> before, Pair<T> strain, T pairDilation, T twoG)
-{
-	return { fma(twoG, strain.normal - pairDilation, before.normal), fma(twoG, strain.shear, before.shear) };
-}
 /// Series rule for the stiffness 2G of a pair [Pa]; q = arm of the first / distance.
 MCA_INLINE double seriesTwoG(double Ga, double Gb, double q) { return Ga > 0 && Gb > 0 ? 2. / (q / Ga + (1. - q) / Gb) : 0.; }
 
@@ -59,25 +33,7 @@ template <class T> struct PairSums {
 	T dilationBefore {}; ///< of normal stress before times pairDilation()
 	T dilationTrial {};
 	T dilationLost {}; ///< as dilationBefore, of links that have just broken
-	/// weight: 1, 1/2 on a weighted rim; what a link that has just broken held goes on in its contact, so it has none in `holds`
-	template <bool account> MCA_INLINE void add(Pair<T> before, Pair<T> trial, T pairDilation, T weight, T holds)
-	{
-		square += mca::square(trial) * weight;
-		if (account) {
-			squareBefore += holds * mca::square(before), both += weight * product(before, trial);
-			dilationBefore += holds * before.normal * pairDilation, dilationTrial += weight * trial.normal * pairDilation;
-			dilationLost += (weight - holds) * before.normal * pairDilation;
-		}
-	}
 };
-
-/// (9): out-of-plane deviator before yield (plane strain) [Pa].
-MCA_INLINE double trialSzz(double twoG, double dilation, double before) { return fma(-twoG * (1. / 3.), dilation, before); }
-/// Equivalent stress squared [Pa2] (10): meanSquare = mean over the slots of s^2 + tau^2; szz = out-of-plane deviator.
-MCA_INLINE double equivalentStress2(double meanSquare, double szz) { return fma(3., meanSquare, 1.5 * szz * szz); }
-MCA_INLINE double equivalentStress(double meanSquare, double szz) { return std::sqrt(equivalentStress2(meanSquare, szz)); }
-/// The same with the pair stresses scaled by the radial return, szz after it.
-MCA_INLINE double equivalentStressAfter(double scale, double meanSquare, double szz) { return std::sqrt(fma(3. * scale * scale, meanSquare, 1.5 * szz * szz)); }
 
 /// Plastic work per mass of a step [J/kg]: goes into the internal energy.
 MCA_INLINE double plasticHeat(double J, double trial, const Return& r, double perRho) { return J * r.scale * trial * r.dEqps * perRho; }
@@ -92,19 +48,10 @@ struct PairWork {
 	double plastic;
 	double coupling; ///< pair work that goes into volume change rather than into the stored deviatoric energy J sigma_eq^2/(6G); zero in a uniform field
 };
-/// sums: of links (and of contacts in `both` and `square`); szz before, trial and after; sixth = cell of the full packing / neighbours; invN = 1/slots.
-/// conjugate: meanPressure() does the work that goes into volume; a link that has just broken was in it before the step.
-MCA_INLINE PairWork pairWork(
-	const PairSums<double>& sums, double trial, const Return& r, double J, double dilation, double szzBefore, double szzTrial, double szz, double threeG,
-	double sixth, double invN, bool conjugate)
-{
-	const double before = equivalentStress(sums.squareBefore * invN, szzBefore);
-	// the stress before the step along the direction of flow: the two need not be parallel
-	const double both  = 3. * sums.both * invN + 1.5 * szzBefore * szzTrial;
-	const double along = trial > 0. ? both / trial : 0.;
-	const double pairs = sixth / invN; // volume the pairs stand for: the cell, but on weighted rims
-	const double vol   = (sums.dilationBefore + r.scale * sums.dilationTrial) * invN + 0.5 * (szzBefore + szz) * dilation * (1. / 3.);
-	const double apart = conjugate ? -sums.dilationLost * invN : vol;
-	return { pairs * J * 0.5 * (along + trial * r.scale) * r.dEqps, pairs * J * (apart - (threeG > 0 ? dilation * before * before / (2. * threeG) : 0.)) };
 }
 }
+#if MCA_DIM == 2
+#include "../plane/pair.hpp"
+#else
+#include "../space/pair.hpp"
+#endif

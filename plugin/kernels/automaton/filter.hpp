@@ -6,12 +6,14 @@
 #include "links.hpp"
 
 namespace mca {
+inline namespace MCA_SPACE {
 
 constexpr int filterPeriod = 8; ///< steps between two exchanges
 
-/// Exchange per fourth difference [-]: 1/64 takes a stripe of alternate rows away at once. rate [-] times c0/d is how fast stripes fade; time since the last
-/// exchange [s].
-inline double volumeExchange(double rate, double c0, double time, double d) { return min(rate * c0 * time / d, 1.) * (1. / 64.); }
+/// Exchange per fourth difference [-]: one over the largest eigenvalue takes a stripe of alternate rows away at once. rate [-] times c0/d is how fast
+/// stripes fade; time since the last exchange [s].
+inline double volumeExchange(double rate, double c0, double time, double d) { return min(rate * c0 * time / d, 1.) * (1. / Lattice::stripes); }
 /// Who exchanges: flows, has all links with full weight, and a volume measured by them (factor > 0).
-inline bool exchangesVolume(double eqps, int32_t flags, double factor) { return eqps > 0. && isWhole(flags) && factor > 0.; }
+inline bool exchangesVolume(double eqps, Flags flags, double factor) { return eqps > 0. && isWhole(flags) && factor > 0.; }
+}
 }

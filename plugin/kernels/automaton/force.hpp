@@ -6,9 +6,10 @@
 #include "volume.hpp"
 
 namespace mca {
+inline namespace MCA_SPACE {
 
 /// Half of S r = S0 d J [m2]: with stresses kept as J times them, exactly the Cauchy stress in any homogeneous deformation. weight: 1, 1/2 on a weighted rim.
-template <class T> MCA_INLINE T pairArea(T weight, T d) { return 0.5 * weight * (d * Lattice::width(1.)) * d; }
+template <class T> MCA_INLINE T pairArea(T weight, T d) { return 0.5 * weight * Lattice::area(d); }
 
 /// (12): viscous pair force over the vector i -> j [N/m]: negative (repulsive) when approaching, zero in expansion.
 /// along = r.(v_j-v_i) [m2/s]; linear = rho c1 c [Pa s/m], quadratic = rho c2 [Pa s2/m2], width = contact width [m].
@@ -30,7 +31,10 @@ MCA_INLINE PairViscosity viscosityOf(const Material& a, const Material& b)
 }
 /// Of a link: in the affine rule the quadratic part is that of the volume, (12a). The linear one stays beside it: links of a material with little strength
 /// collapse without, at unchanged volume.
-MCA_INLINE PairViscosity ofLink(PairViscosity p, VolumeRule rule) { return { p.linear, rule == VolumeRule::affine ? 0. : p.quadratic }; }
+MCA_INLINE PairViscosity ofLink(PairViscosity p, VolumeRule rule) 
+{
+	return { Lattice::linkViscosity * p.linear, rule == VolumeRule::affine ? 0. : p.quadratic };
+}
 /// (12a): viscous pressure of an automaton of the affine rule.
 struct BulkViscosity {
 	double linear, quadratic; ///< times the increment of the volume strain and its square: over one move [Pa]
@@ -56,12 +60,5 @@ inline bool samePairs(const Material& a, const Material& b)
 		&& a.viscosity.quadratic == b.viscosity.quadratic;
 }
 
-/// Force of a link: stress = sum over both sides times the area, over r [N/m over m]; push: of the pressures.
-template <class T> MCA_INLINE Vec<T> linkForce(Vec<T> r, T along, T across, Vec<T> push) { return fma(along, r, fma(across, turned(r), -push)); }
-/// Force of a contact: stress as for links, viscous = viscousCoefficient(), pressure over r [N/m2].
-template <class T> MCA_INLINE Vec<T> contactForce(Vec<T> r, Pair<T> stress, T invR2, T viscous, T pressure)
-{
-	const T along = fma(stress.normal, invR2, viscous - pressure), across = stress.shear * invR2;
-	return fma(along, r, turned(r) * across);
 }
 }

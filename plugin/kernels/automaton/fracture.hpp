@@ -4,6 +4,7 @@
 #include "contact.hpp"
 
 namespace mca {
+inline namespace MCA_SPACE {
 
 constexpr int breakPeriod = 4; ///< steps between two tests for breaking links
 
@@ -46,7 +47,7 @@ struct Settling {
 	double need;  ///< volume term that each near contact must have [-]
 	/// J: volume to take over; Jc: that of the contacts; near: contacts about as near as in the packing.
 	Settling(VolumeRule rule, double J, double Jc, int near, double invN)
-		: holds(near >= 3 && J < Jc)
+		: holds(near >= Lattice::volumeLinks && J < Jc)
 		, need((rule == VolumeRule::meanDistance ? meanTerm<VolumeRule::meanDistance>(J) : meanTerm<VolumeRule::inversePower>(J))
 		       / (near * (rule == VolumeRule::affine ? 1. / nLinks : invN))) // contactRatio()
 	{
@@ -57,7 +58,8 @@ struct Settling {
 	double restDistance(VolumeRule rule, double r, double d) const
 	{
 		if (!holds || !isNear(r, d)) return min(r, d);
-		return rule == VolumeRule::meanDistance ? r / (1. + need) : r * std::sqrt(1. + need);
+		return rule == VolumeRule::meanDistance ? r / (1. + need) : r * Lattice::stretch(1. + need);
 	}
 };
+}
 }

@@ -6,24 +6,22 @@
 #include "volume.hpp"
 
 namespace mca {
+inline namespace MCA_SPACE {
 
-/// Largest stable step [s] of the hexagonal packing (13), d [m]: the rotation of an automaton against its neighbours has omega^2 = 32 G/(rho d^2), which limits
-/// the step for Poisson ratios below 0.48; sound waves limit it to 1.65 d/cP, less with viscosity. cP with the tangent at the present state, cS [m/s];
-/// zeta = dampingRatio() [-].
+/// Largest stable step [s] of the packing (13), d [m]: the rotation of an automaton against its neighbours limits it for Poisson ratios below 0.48; sound waves
+/// limit it above, and more with viscosity. cP with the tangent at the present state, cS [m/s]; zeta = dampingRatio() [-].
 inline double stableStep(double d, double cP, double cS, double zeta)
 {
-	const double sound = 1.65 * d / cP * (std::sqrt(1. + zeta * zeta) - zeta);
-	return cS > 0. ? min(sound, 0.35355339059327376 * d / cS) : sound;
+	const double sound = Lattice::soundStep * d / cP * (std::sqrt(1. + zeta * zeta) - zeta);
+	return cS > 0. ? min(sound, Lattice::turningStep * d / cS) : sound;
 }
-/// Damping ratio of the fastest sound wave [-]; cP with the tangent at the present state, approach = d |theta'| [m/s]. The operator of the volume has the
-/// largest eigenvalue 1.377/d^2, the fastest wave omega = 1.212 cP/d: hence the share of (12a), which has 2 c2 as the slope of its quadratic part. Links damp
-/// by c1 at rest, and no more where the tangent has become stiffer.
+/// Damping ratio of the fastest sound wave [-]; cP with the tangent at the present state, approach = d |theta'| [m/s]. (12a) has 2 c2 as the
+/// slope of its quadratic part. Links damp by c1 at rest, and no more where the tangent has become stiffer.
 inline double dampingRatio(const Material& m, VolumeRule rule, double cP, double approach)
 {
 	const Viscosity& v = m.viscosity;
 	if (rule != VolumeRule::affine) return v.active() ? v.linear + v.quadratic * approach / cP : 0.;
-	constexpr double ofVolume = 1.377 / (2. * 1.212);
-	return (v.linear * m.cP() + ofVolume * (v.linear * m.eos.c0 + 2. * v.quadratic * approach)) / cP;
+	return (Lattice::linkViscosity * v.linear * m.cP() + Lattice::volumeDamping * (v.linear * m.eos.c0 + 2. * v.quadratic * approach)) / cP;
 }
 /// Square of the frequency with which an automaton at an outline turns against its neighbours, over that inside: they move, too. Covers bodies of four
 /// triangles or more; one to three alone have up to 1.375, so that their limit is 5 % shorter.
@@ -44,4 +42,5 @@ inline double stepLimitAtRest(const Material& m, double d, double J = 1.)
 }
 /// Pairs that meet: no more than an eighth of their distance in a step. speed2: square of the largest relative speed [m2/s2].
 inline double stepLimitOfContacts(double d, double speed2) { return 0.125 * d / std::sqrt(speed2); }
+}
 }

@@ -5,35 +5,36 @@
 #include <cstdint>
 
 namespace mca {
+inline namespace MCA_SPACE {
 
-enum Flag : int32_t {
-	linkBits   = (1 << nLinks) - 1, ///< bit k: link k holds
-	halfShift  = 8,                 ///< bits from here: link k counts half (on a weighted rim)
-	halfBits   = linkBits << halfShift,
-	hadShift   = 16,      ///< bits from here: link k once held (a broken pair stays broken)
-	exposedBit = 1 << 24, ///< may touch something: rim, broken or flowing
-	tiedBit    = 1 << 25, ///< carried by the grid
-	outlineShift = 26,    ///< bits from here: triangle k belongs to the body, see outline.hpp
+using Flags = Lattice::Flags;
+enum Flag : Flags {
+	linkBits     = (Flags(1) << nLinks) - 1, ///< bit k: link k holds
+	halfShift    = Lattice::flagField,       ///< bits from here: link k counts half (on a weighted rim)
+	halfBits     = linkBits << halfShift,
+	hadShift     = 2 * Lattice::flagField,                ///< bits from here: link k once held (a broken pair stays broken)
+	exposedBit   = Flags(1) << 3 * Lattice::flagField,       ///< may touch something: rim, broken or flowing
+	tiedBit      = Flags(1) << (3 * Lattice::flagField + 1), ///< carried by the grid
+	outlineShift = 3 * Lattice::flagField + 2,            ///< bits from here: see outline.hpp
 };
-constexpr uint32_t outlineBits = uint32_t(linkBits) << outlineShift;
-static_assert(halfShift + nLinks <= hadShift && hadShift + nLinks <= 24, "the bits of the links overlap");
-static_assert(outlineShift + nLinks <= 32, "the bits of the triangles do not fit");
+static_assert(nLinks <= Lattice::flagField, "the bits of the links overlap");
 
-inline bool   holds(int32_t flags, int k) { return (flags >> k) & 1; }
-inline bool   hasHeld(int32_t flags, int k) { return (flags >> (hadShift + k)) & 1; }
-inline double linkWeight(int32_t flags, int k) { return (flags >> (halfShift + k)) & 1 ? 0.5 : 1.; }
-inline int    linkCount(int32_t flags) { return __builtin_popcount(unsigned(flags & linkBits)); }
-inline int    brokenCount(int32_t flags) { return __builtin_popcount(unsigned((flags >> hadShift) & linkBits)) - linkCount(flags); }
+inline bool   holds(Flags flags, int k) { return (flags >> k) & 1; }
+inline bool   hasHeld(Flags flags, int k) { return (flags >> (hadShift + k)) & 1; }
+inline double linkWeight(Flags flags, int k) { return (flags >> (halfShift + k)) & 1 ? 0.5 : 1.; }
+inline int    linkCount(Flags flags) { return __builtin_popcount(unsigned(flags & linkBits)); }
+inline int    brokenCount(Flags flags) { return __builtin_popcount(unsigned((flags >> hadShift) & linkBits)) - linkCount(flags); }
 /// All links, with full weight.
-inline bool isWhole(int32_t flags) { return (flags & (linkBits | halfBits)) == linkBits; }
+inline bool isWhole(Flags flags) { return (flags & (linkBits | halfBits)) == linkBits; }
 /// All bits of link k.
-constexpr int32_t slotBits(int k) { return (1 << k) | (1 << (halfShift + k)) | (1 << (hadShift + k)); }
+constexpr Flags slotBits(int k) { return (Flags(1) << k) | (Flags(1) << (halfShift + k)) | (Flags(1) << (hadShift + k)); }
 
 /// An exposed automaton touches an interior one, too, when it is no part of its body: debris (links that span no volume) or another group. Both may come
 /// through a rim that has been stretched. Automata of one body keep to their links there.
-inline bool mayTouch(int32_t a, int32_t b, bool sameGroup)
+inline bool mayTouch(Flags a, Flags b, bool sameGroup)
 {
-	const auto foreign = [&](int32_t flags) { return linkCount(flags) < 3 || !sameGroup; };
+	const auto foreign = [&](Flags flags) { return linkCount(flags) < Lattice::volumeLinks || !sameGroup; };
 	return a & exposedBit ? (b & exposedBit) || foreign(a) : (b & exposedBit) && foreign(b);
+}
 }
 }

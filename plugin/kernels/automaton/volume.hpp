@@ -5,6 +5,9 @@
 #include "../material.hpp"
 
 namespace mca {
+inline namespace MCA_SPACE {
+
+using mca::dispatch; // of laws, beside that of volume rules below
 
 /// affine (default): J = det F from the links; inversePower: mean of (d/r)^dim; meanDistance: mean linear strain, as published.
 enum class VolumeRule { affine, inversePower, meanDistance };
@@ -19,15 +22,15 @@ template <class F> MCA_INLINE auto dispatch(VolumeRule rule, F&& f)
 /// Contacts of the affine rule follow (5): the rule by which a pair that is no link adds to a volume.
 constexpr VolumeRule ofContacts(VolumeRule rule) { return rule == VolumeRule::affine ? VolumeRule::inversePower : rule; }
 
-/// det F0 of the links that measure a volume [-]: three in a row or a star have 0.25; three with a gap have 0.17, two have 0.083 and measure none
-constexpr double minVolume = 0.2;
+/// det F0 of the links that measure a volume [-]. In the plane: three in a row or a star have 0.25; three with a gap have 0.17, two have 0.083: none.
+/// In space: five links and more that are not in a plane, and the symmetric sets of four.
+constexpr double minVolume = Lattice::minVolume;
 
 /// What one pair adds to the sum of the volume rule [-]: (5) inversePower (d/r)^dim - 1; meanDistance r/d - 1 (the published mean linear strain).
 template <VolumeRule rule> MCA_INLINE double volumeTerm(double d, double r2)
 {
-	static_assert(Lattice::dim == 2, "powers of the distance");
 	if constexpr (rule == VolumeRule::meanDistance) return std::sqrt(r2) / d - 1.;
-	else return d * d / r2 - 1.;
+	else return Lattice::power(d, r2) - 1.;
 }
 /// J = Omega/Omega0 [-] from the mean of the volume terms.
 template <VolumeRule rule> MCA_INLINE double volumeRatio(double meanTerm)
@@ -52,25 +55,25 @@ template <VolumeRule rule> MCA_INLINE double pressureShare(double P, double J, d
 template <VolumeRule rule> MCA_INLINE double pressureShape(double d, double invR2)
 {
 	if constexpr (rule == VolumeRule::meanDistance) return std::sqrt(invR2) / d;
-	else return d * d * invR2 * invR2;
+	else return Lattice::shape(d, invR2);
 }
 
-/// det F of links with this sum of r (x) e_k is perArea(d) times its determinant [1/m2]: F = that sum / (spread d).
-MCA_INLINE double perArea(double d) { return 1. / (Lattice::spread * Lattice::spread * (d * d)); }
-MCA_INLINE double linkDeterminant(const Tensor<double>& sum, double perArea) { return determinant(sum) * perArea; }
+/// det F of links with this sum of r (x) e_k; perVolume: of the lattice.
+MCA_INLINE double linkDeterminant(const Tensor<double>& sum, double perVolume) { return determinant(sum) * perVolume; }
 
 /// What the volume of an automaton needs of its material and diameter; law: kind of its equation of state.
 template <EosKind law> struct VolumeConstants {
 	Eos    eos;
 	double d2;      ///< diameter squared [m2]
-	double perArea; ///< see linkDeterminant() [1/m2]
+	double perVolume, perSlope; ///< of the lattice
 	double G43;     ///< 4 G/3 [Pa]
 	double perRho;  ///< 1/rho0 [m3/kg]
 	double clampAt; ///< volume strain at which the equation of state is clamped [-]
 	VolumeConstants(const Material& m, double d)
 		: eos(m.eos)
 		, d2(d * d)
-		, perArea(mca::perArea(d))
+		, perVolume(Lattice::perVolume(d))
+		, perSlope(Lattice::perSlope(d))
 		, G43(m.G * (4. / 3.))
 		, perRho(1. / m.eos.rho0)
 		, clampAt(LawOf<law>::clampStrain(m.eos))
@@ -122,13 +125,13 @@ struct AffineRest {
 /// sum = sum of r (x) e_k at rest [m].
 template <EosKind law> MCA_INLINE AffineRest affineRest(const VolumeConstants<law>& c, const Tensor<double>& sum)
 {
-	const double det = linkDeterminant(sum, c.perArea), factor = det > minVolume ? 1. / det : 0.;
+	const double det = linkDeterminant(sum, c.perVolume), factor = det > minVolume ? 1. / det : 0.;
 	return { factor, factor > 0. ? 1. - factor * det : 0. };
 }
 /// J by the links, or by the contacts (sum of their volume terms) where the links have none.
 template <EosKind law> MCA_INLINE double affineRatio(const VolumeConstants<law>& c, const Tensor<double>& sum, double factor, double rest, double contactSum)
 {
-	const double det = linkDeterminant(sum, c.perArea);
+	const double det = linkDeterminant(sum, c.perVolume);
 	return factor > 0. ? factor * det + rest : contactRatio(contactSum);
 }
 /// The factor with which other links measure the volume J; det: linkDeterminant() of these links.
@@ -136,22 +139,13 @@ MCA_INLINE double affineFactor(double J, double rest, double det) { return det >
 /// A pressure P pushes link k by P cell affinePush() e_k [N/m]: P dV/dr, V = cell J. [1/m]
 template <EosKind law> MCA_INLINE Tensor<double> affinePush(const VolumeConstants<law>& c, const Tensor<double>& sum, double factor)
 {
-	return cofactor(sum) * (factor * c.perArea);
-}
-/// (5f): P and what the deviators of the automaton's own sides do with its volume [Pa]. normals = sum of weight J s over its links, full = cell of the whole
-/// packing. In a uniform field of a whole star the second part is zero. What is below the last bit of a strain is nothing, as it is in P: else the front of
-/// numbers that are not zero runs twice as fast into material at rest. bulk: rho0 c0^2 [Pa].
-MCA_INLINE double meanPressure(double P, double normals, double J, double szz, double invN, double full, double cell, double bulk)
-{
-	const double own = full / cell * fma(normals, 2. / (3. * nLinks * J), szz / (3. * nLinks * invN));
-	return P + (std::fabs(own) > 2.3e-16 * bulk ? own : 0.);
+	return cofactor(sum) * (factor * c.perVolume);
 }
 /// Sum of (dJ/dr_k)^2 over the links, over that of the perfect packing, at least 1 [-]: how much more the volume feels the motion of neighbours. directions:
 /// sum of e_k (x) e_k.
 template <EosKind law> MCA_INLINE double volumeSlope(const VolumeConstants<law>& c, const Tensor<double>& F, const Symmetric<double>& e, double factor)
 {
-	const double spread = e.xx * (F.yy * F.yy + F.xy * F.xy) - 2. * e.xy * (F.yy * F.yx + F.xy * F.xx) + e.yy * (F.yx * F.yx + F.xx * F.xx);
-	return max(factor * factor * spread * c.perArea * (1. / nLinks), 1.);
+	return max(factor * factor * squareOfPushes(F, e) * c.perSlope * (1. / nLinks), 1.);
 }
 /// How much stiffer sound is at outlines than inside, over the slope of the volume: covers every body of triangles, of which a single one is the stiffest.
 constexpr double atOutlines = 2.1;
@@ -163,5 +157,6 @@ template <EosKind law> MCA_INLINE double affineStiffness(const VolumeConstants<l
 	const double inBody = max(min(slope * slope, 4.), slope);
 	const double shear  = max(0.5 * c.d2 / nearest2, 1.);
 	return stiffness<law>(c, J, outline ? atOutlines * slope : inBody, outline ? atOutlines * shear : shear);
+}
 }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Pass 2: trial stresses of the links, radial return, what the account books, fracture criteria.
-#include "passes.hpp"
-#include "view.hpp"
+#include "../passes.hpp"
+#include "../returns.hpp"
 
 namespace mca::automata {
 namespace {
@@ -11,10 +11,8 @@ namespace {
 			dilationLost[blockSize];
 		PairSums<double> of(int l) const { return { square[l], before[l], both[l], dilationBefore[l], dilationTrial[l], dilationLost[l] }; }
 	};
-	/// Radial return of each automaton of a block.
-	struct Returns {
-		alignas(64) double szz[blockSize], trial[blockSize], scale[blockSize], flow[blockSize];
-		Return             of(int l) const { return { scale[l], flow[l] }; }
+	struct PlaneReturns : Returns {
+		alignas(64) double szz[blockSize];
 	};
 
 	/// (7)-(8): (J s), (J tau) of the step before become those before yield.
@@ -51,7 +49,7 @@ namespace {
 				now           = { choose<intact>(on, now.normal, splat(0.)), choose<intact>(on, now.shear, splat(0.)) };
 				store(V.s + k * blockSize + g, now.normal), store(V.tau + k * blockSize + g, now.shear);
 				const v8 weight = weights<intact>(bits, k);
-				sums.template add<account>(old, now, dth, weight, choose<intact>(on, weight, splat(0.)));
+				add<account>(sums, old, now, dth, weight, choose<intact>(on, weight, splat(0.)));
 			}
 			store(to.square + g, sums.square);
 			if (account)
@@ -60,31 +58,10 @@ namespace {
 		}
 	}
 
-	/// Radial return of a dear law for eight automata, if any of them is above its static yield stress; else they stay elastic.
-	template <YieldKind kind> void returnWhereAbove(const BlockView& V, double threeG, double dt, int g, Returns& to)
-	{
-		const Yield&       yield = V.material.yield;
-		alignas(64) double stress[lanes], slope[lanes];
-		double             over = 0;
-#pragma omp simd reduction(max : over)
-		for (int l = 0; l < lanes; l++) {
-			const StaticYield s = staticYield<kind>(yield, V.eqps[g + l], V.temperature[g + l]);
-			stress[l] = s.stress, slope[l] = s.slope;
-			over = max(over, to.trial[g + l] - s.stress);
-		}
-		if (!(over > 0.)) return;
-#pragma omp simd
-		for (int l = 0; l < lanes; l++) {
-			const Return r = radialReturn<kind>(
-				yield, StaticYield { stress[l], slope[l] }, to.trial[g + l], V.eqps[g + l], V.temperature[g + l], threeG, dt);
-			to.scale[g + l] = r.scale, to.flow[g + l] = r.dEqps;
-		}
-	}
 	/// (9)-(11)
-	template <YieldKind kind> MCA_INLINE void radialReturns(const BlockView& V, const Sums& sums, double dt, Returns& to)
+	template <YieldKind kind> MCA_INLINE void radialReturns(const BlockView& V, const Sums& sums, double dt, PlaneReturns& to)
 	{
-		const Yield  yield = V.material.yield;
-		const double twoG = 2. * V.material.G, threeG = 3. * V.material.G;
+		const double twoG = 2. * V.material.G;
 		double       most = 0, hottest = 0;
 #pragma omp simd reduction(max : most, hottest)
 		for (int l = 0; l < blockSize; l++) {
@@ -93,23 +70,12 @@ namespace {
 			most        = max(most, to.trial[l]);
 			if (LawOf<kind>::heats) hottest = max(hottest, V.temperature[l]);
 		}
-		// logarithms and powers are most of the cost: not where nobody reaches the yield stress of unstrained material at the highest temperature
-		if constexpr (LawOf<kind>::isDear) {
-			std::fill(to.scale, to.scale + blockSize, 1.), std::fill(to.flow, to.flow + blockSize, 0.);
-			if (most > staticYield<kind>(yield, 0., hottest).stress)
-				for (int g = 0; g < blockSize; g += lanes)
-					returnWhereAbove<kind>(V, threeG, dt, g, to);
-		} else
-#pragma omp simd
-			for (int l = 0; l < blockSize; l++) {
-				const Return r = radialReturn<kind>(yield, to.trial[l], V.eqps[l], LawOf<kind>::heats ? V.temperature[l] : 0., threeG, dt);
-				to.scale[l] = r.scale, to.flow[l] = r.dEqps;
-			}
+		returnAll<kind>(V, most, hottest, dt, to);
 	}
 
 	/// State after the return; fills factor = J times its scale.
 	template <YieldKind kind, bool account>
-	MCA_INLINE void yieldBlock(const BlockView& V, const Sums& sums, const Returns& R, bool conjugate, double* factor, BlockWork* work)
+	MCA_INLINE void yieldBlock(const BlockView& V, const Sums& sums, const PlaneReturns& R, bool conjugate, double* factor, BlockWork* work)
 	{
 		const Yield  yield = V.material.yield;
 		const double threeG = 3. * V.material.G, perRho = 1. / V.material.eos.rho0, sixth = Lattice::cell(V.d) / nLinks;
@@ -172,7 +138,7 @@ namespace {
 		for (int l = 0; account && l < blockSize; l++)
 			V.record[nodeSize * l + viscousShareAt] = acting[l] != 0. ? V.viscous[l] / acting[l] : 0.;
 	}
-	double fractureCriteria(const BlockView& V, const Sums& sums, const Returns& R)
+	double fractureCriteria(const BlockView& V, const Sums& sums, const PlaneReturns& R)
 	{
 		const Criteria c(V.material.fracture);
 		double         worst = 0;
@@ -191,7 +157,7 @@ namespace {
 	{
 		const bool         contacts = V.block.contact && X.contactSq;
 		Sums               sums;
-		Returns            R;
+		PlaneReturns       R;
 		alignas(64) double factor[blockSize];
 		trialStresses<intact, mixed, account>(V, S, affine ? ofOwn : ofBoth, dt, sums);
 		if (contacts)

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Pass 1: volume of each automaton from its links, pressure, and what it pushes its neighbours with.
-#include "../kernels/automaton/force.hpp"
-#include "../kernels/automaton/limit.hpp"
-#include "passes.hpp"
-#include "view.hpp"
+#include "../../kernels/automaton/force.hpp"
+#include "../../kernels/automaton/limit.hpp"
+#include "../passes.hpp"
+#include "../view.hpp"
 
 namespace mca::automata {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Pass 3: forces and torques from the pressures, stresses and velocities of both sides of each link.
-#include "passes.hpp"
-#include "view.hpp"
+#include "../passes.hpp"
+#include "../view.hpp"
 
 namespace mca::automata {
 namespace {
@@ -118,7 +118,7 @@ namespace {
 	{
 		for (int c = 0; c < dim; c++)
 			for (int l = 0; l < blockSize; l++) V.force[c][l] += E.contactForce[c][V.base + l];
-		for (int l = 0; l < blockSize; l++) V.torque[l] += E.contactT[V.base + l];
+		for (int l = 0; l < blockSize; l++) V.torque[l] += E.contactT[0][V.base + l];
 	}
 }
 
@@ -131,6 +131,6 @@ void forcePass(Store& S, size_t b, VolumeRule rule, const Extra& E)
 		            auto account) { run<r.value, intact.value, mixed.value, viscous.value, account.value>(V, S, E); },
 		        V.block.intact, V.block.mixed, V.material.viscosity.active() || V.block.mixed, E.account);
 	});
-	if (V.block.contact && E.contactT) addContacts(V, E);
+	if (V.block.contact && E.contactT[0]) addContacts(V, E);
 }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Where bodies end: outlines through centres (formulation, (5g), (7b)) and weighted rims, made with the links.
-#include "solver.hpp"
+#include "../solver.hpp"
 #include <algorithm>
 #include <cmath>
 #include <sstream>

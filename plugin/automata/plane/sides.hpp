@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+#include "../../kernels/automaton/contact.hpp"
+#include "../../kernels/automaton/energy.hpp"
+#include "../sides.hpp"
+
+namespace mca::automata {
+
+/// Numbers of a record of motion, and places in it behind position and velocity.
+constexpr int nodeSize = 8, spinAt = 4, dilationAt = 5, viscousShareAt = 6;
+/// Writes the motion of the eight automata from i on; the rest comes from the passes.
+template <class S> void packRecords(const S& store, double* to, size_t i)
+{
+	const Vec<v8> r = load(store.position.planes(), i), v = load(store.velocity.planes(), i);
+	scatter4(to, nodeSize, r[0], r[1], v[0], v[1]);
+	scatter4(to + spinAt, nodeSize, load(&store.omega[i]), load(&store.dTheta[i]), v8 {}, v8 {});
+}
+
+/// A plane of 64 numbers per link and block.
+struct LinkStresses {
+	std::vector<double> s, tau; ///< J times normal and shear pair stress of this side [Pa]
+	void                resizeStresses(size_t links) { s.assign(links, 0.), tau.assign(links, 0.); }
+	size_t              stresses() const { return s.size() == tau.size() ? s.size() : 0; }
+	Side<double>        stressAt(size_t slot) const { return { s[slot], tau[slot] }; }
+	void                setStress(size_t slot, Side<double> v) { s[slot] = v.normal, tau[slot] = v.shear; }
+};
+/// Of contact c, in the list of contacts or a view of it.
+template <class C> MCA_INLINE Side<double> sideOf(const C& contacts, size_t c) { return { contacts.s[c], contacts.tau[c] }; }
+template <class C> MCA_INLINE void         setSide(C& contacts, size_t c, Side<double> v) { contacts.s[c] = v.normal, contacts.tau[c] = v.shear; }
+template <class C> void                    pushSide(C& contacts, Side<double> v) { contacts.s.push_back(v.normal), contacts.tau.push_back(v.shear); }
+template <class C> MCA_INLINE void         setBefore(C& contacts, size_t c, Side<double> v) { contacts.second[c] = v.normal, contacts.third[c] = v.shear; }
+
+/// What friction needs of contact c of a view.
+template <class C> MCA_INLINE ContactSide contactSide(const C& V, size_t c, double J, double scale)
+{
+	return { { V.second[c], V.third[c] }, { V.s[c], V.tau[c] }, V.press[c], V.r2[c], V.d[c], V.friction[c], J, scale, V.touch[c] > 0. };
+}
+/// Trial stress of contact c of a view, and that of the step before as it counts for the account.
+struct ContactTrial {
+	Side<double> trial, before;
+};
+MCA_INLINE ContactTrial contactTrial(Side<double> old, Vec<double> r, Vec<double> u, double spin, double dilation, double twoG)
+{
+	return { advanced(old, r, u, spin, dilation, twoG), old };
+}
+
+/// Energy of the deviator of an automaton that pairs and its out-of-plane stress hold [J/m].
+template <class S> double deviatorEnergyAt(const S& store, size_t i, double pairs)
+{
+	return deviatorEnergy(store.materialOf(i).G, store.diameter[i], pairs, store.J[i], store.szz[i], store.invN[i]);
+}
+/// Mises stress; sum over its links of the squares of the stresses [Pa2].
+template <class S> double equivalentStressAt(const S& store, size_t i, double squares) { return mca::equivalentStress(squares * store.invN[i], store.szz[i]); }
+template <class C> bool sidesAre(const C& contacts, size_t n) { return contacts.s.size() == n && contacts.tau.size() == n; }
+/// f(array) of the out-of-plane stresses.
+template <class S, class F> bool outOfPlane(const S& store, F&& f) { return f(store.szz); }
+/// Takes over what is of this kind only.
+template <class S> void inheritStress(S& to, size_t i, const S& from, size_t o) { to.szz[i] = from.szz[o]; }
+}

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Rows of fields.hpp that are others in the plane.
+#pragma once
+#include "../../kernels/automaton/links.hpp"
+
+/// Names of the components of a vector.
+#define MCA_COMPONENTS(first, second, third) first, second, third
+/// A row of rotations or torques.
+#define MCA_TURN(F, V, name, presence, shown, scripts, text) V(name, presence, scripts, text, #name "X", #name "Y", #name "Z")
+#define MCA_TURN_SUM(F, V, name, presence, text) V(name, presence, text, #name "X", #name "Y", #name "Z")
+#define MCA_OUT_OF_PLANE(F)
+/// Stresses of contacts.
+#define MCA_CONTACT_SIDES(F, V) V(traction, saved, "J times traction of this side [Pa]", "tx", "ty", "tz")
+#define MCA_CONTACT_BEFORE(F, V) V(before, scratch, "traction before this step, turned with the pair [Pa]", "bx", "by", "bz")
+
+/// Stresses of links, and names of what the solver keeps beside the rows, as they are saved.
+#define MCA_LINK_STRESSES store.traction
+#define MCA_SOLVER_VECTORS "accountForce.volumetric, accountForce.viscous, searched, tiedVelocity, tiedSpin: components in turn"

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Pass 3 in space: forces and torques from the pressures, tractions and velocities of both sides of each link.
+#include "../passes.hpp"
+#include "../view.hpp"
+
+namespace mca::automata {
+namespace {
+	/// Tractions of link k at its other ends j: in the opposite plane of their blocks.
+	MCA_INLINE Vec<v8> tractionsOfOthers(const double* traction, const int32_t* j, int k)
+	{
+		int32_t at[lanes];
+		for (int l = 0; l < lanes; l++)
+			at[l] = j[l] + int32_t(uint32_t(j[l]) / blockSize) * ((nLinks - 1) * blockSize) + Lattice::opposite(k) * blockSize;
+		return gatherTraction(traction, at);
+	}
+	/// Per lane: (12) with the coefficients of the pair.
+	MCA_INLINE v8 viscosityMixed(const BlockView& V, const Store& S, const int32_t* j, v8 along, v8 invR2, v8 dij, v8 w)
+	{
+		v8 q;
+		for (int l = 0; l < lanes; l++) {
+			const PairViscosity c = ofLink(S.pairViscosity(V.block.species, j[l]), VolumeRule::affine);
+			q[l] = w[l] * viscousCoefficient(along[l], invR2[l], c.linear, c.quadratic, Lattice::width(dij[l]));
+		}
+		return q;
+	}
+	/// The share of the viscosity in the pushes of automata.
+	MCA_INLINE v8 viscousShares(const BlockView& V, const int32_t* at)
+	{
+		v8 share, unused;
+		gather2(V.node + viscousShareAt, nodeSize, at, share, unused);
+		return share;
+	}
+	template <bool intact, bool mixed, bool viscous, bool account> void run(const BlockView& V, const Store& S, const Extra& E)
+	{
+		const PairViscosity own = ofLink(viscosityOf(V.material), VolumeRule::affine);
+		int32_t             self[blockSize];
+		for (int l = 0; l < blockSize; l++) self[l] = int32_t(V.base) + l;
+		for (int g = 0; g < blockSize; g += lanes) {
+			const Vec<v8>    x = load(V.position, g), v = load(V.velocity, g), none {};
+			const m8         bits = intact ? m8 {} : widen(V.flags + g);
+			const Tensor<v8> push = gatherPush(V.pushOfAll, self + g);
+			Vec<v8>          force = none, torque = none, ofPressure = none, ofViscosity = none;
+			Tensor<v8>       viscousPush;
+			if (account) viscousPush = push * viscousShares(V, self + g);
+#pragma GCC unroll 12
+			for (int k = 0; k < nLinks; k++) {
+				const int32_t*   j     = V.others(k, g);
+				const Motion     other = viscous ? gatherVelocity(V.node, j) : Motion { gatherPosition(V.node, j), none, none };
+				const Tensor<v8> theirs = gatherPush(V.pushOfAll, j);
+				const Vec<v8>    r   = other.position - x;
+				const m8         on  = holding(bits, k);
+				const v8         w   = choose<intact>(on, weights<intact>(bits, k), splat(0.));
+				v8               dij = splat(V.d);
+				if (mixed)
+					for (int l = 0; l < lanes; l++) dij[l] = 0.5 * (V.d + V.diameterOfAll[j[l]]);
+				const v8      r2 = choose<intact>(on, dot(r, r), dij * dij), invR2 = 1. / r2;
+				const Vec<v8> mine = gatherTraction(V.tractions(k, g), inRow), others = tractionsOfOthers(V.tractionOfAll, j, k);
+				const Vec<v8> both  = ofBothSides(pairArea(w, dij), mine, others);
+				const Vec<v8> press = choose<intact>(on, times(push + theirs, k), none); // pushes i by its negative
+				v8            q {};
+				if (viscous) {
+					const v8 closing = dot(r, other.velocity - v);
+					q = mixed ? viscosityMixed(V, S, j, closing, invR2, dij, w)
+						  : w * viscousCoefficient(closing, invR2, own.linear, own.quadratic, Lattice::width(V.d));
+				}
+				if (account) { // what of the push is viscous
+					const Vec<v8> p = choose<intact>(on, times(viscousPush + theirs * viscousShares(V, j), k), none);
+					ofViscosity     = fma(q, r, ofViscosity) - p, ofPressure += p - press;
+				}
+				const v8 perLength = root(invR2);
+				force += linkForce(r, both, perLength, q, press);
+				Vec<v8> turning = cross(r, both) * perLength;
+				v8      q1      = splat(0.5);
+				if (mixed)
+					for (int l = 0; l < lanes; l++) q1[l] = arm(V.d, V.diameterOfAll[j[l]]);
+				torque = fma(q1, turning, torque);
+			}
+			store(V.force, g, force), store(V.torque, g, torque);
+			if (account) store(E.volumetric, V.base + g, ofPressure), store(E.viscous, V.base + g, ofViscosity);
+		}
+	}
+	void addContacts(const BlockView& V, const Extra& E)
+	{
+		for (int c = 0; c < dim; c++)
+			for (int l = 0; l < blockSize; l++) V.force[c][l] += E.contactForce[c][V.base + l];
+		for (int c = 0; c < turns; c++)
+			for (int l = 0; l < blockSize; l++) V.torque[c][l] += E.contactT[c][V.base + l];
+	}
+}
+
+void forcePass(Store& S, size_t b, VolumeRule, const Extra& E)
+{
+	prefetchLinks(S, b);
+	const BlockView V(S, b);
+	const bool viscous = ofLink(viscosityOf(V.material), VolumeRule::affine).linear > 0., plain = !V.block.mixed && !E.account;
+	// the rare ones have fewer versions
+	if (plain) choices([&](auto intact, auto friction) { run<intact.value, false, friction.value, false>(V, S, E); }, V.block.intact, viscous);
+	else if (V.block.mixed) choices([&](auto account) { run<false, true, true, account.value>(V, S, E); }, E.account);
+	else choices([&](auto intact) { run<intact.value, false, true, true>(V, S, E); }, V.block.intact);
+	if (V.block.contact && E.contactT[0]) addContacts(V, E);
+}
+}

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+#include "../../kernels/automaton/contact.hpp"
+#include "../../kernels/automaton/energy.hpp"
+#include "../sides.hpp"
+
+namespace mca::automata {
+
+/// Numbers of a record of motion, and places in it behind position and velocity.
+constexpr int nodeSize = 12, spinAt = 6, dilationAt = 9, viscousShareAt = 10;
+/// Writes the motion of the eight automata from i on; the rest comes from the passes.
+template <class S> void packRecords(const S& store, double* to, size_t i)
+{
+	const Vec<v8> r = load(store.position.planes(), i), v = load(store.velocity.planes(), i), w = load(store.omega.planes(), i);
+	scatter4(to, nodeSize, r[0], r[1], r[2], v[0]);
+	scatter4(to + 4, nodeSize, v[1], v[2], w[0], w[1]);
+	scatter4(to + 8, nodeSize, w[2], load(&store.dTheta[i]), v8 {}, v8 {});
+}
+
+constexpr int tractionSize = 4; ///< numbers of the record of a traction: the other side reads it whole
+struct LinkStresses {
+	std::vector<double> traction; ///< a record for each link: J times the traction of this side [Pa], 0
+	void                resizeStresses(size_t links) { traction.assign(links * tractionSize, 0.); }
+	size_t              stresses() const { return traction.size() / tractionSize; }
+	Side<double>        stressAt(size_t slot) const
+	{
+		const double* t = traction.data() + slot * tractionSize;
+		return { t[0], t[1], t[2] };
+	}
+	void setStress(size_t slot, Side<double> v)
+	{
+		for (int c = 0; c < dim; c++) traction[slot * tractionSize + c] = v[c];
+	}
+};
+/// Of contact c, in the list of contacts or a view of it.
+template <class C> MCA_INLINE Side<double> sideOf(const C& contacts, size_t c) { return contacts.traction.at(c); }
+template <class C> MCA_INLINE void         setSide(C& contacts, size_t c, Side<double> v) { contacts.traction.set(c, v); }
+template <class C> void                    pushSide(C& contacts, Side<double> v) { contacts.traction.push_back(v); }
+template <class C> MCA_INLINE void         setBefore(C& contacts, size_t c, Side<double> v) { contacts.before.set(c, v); }
+
+/// What friction needs of contact c of a view.
+template <class C> MCA_INLINE ContactSide contactSide(const C& V, size_t c, double J, double scale)
+{
+	const Vec<double> normal = Lattice::bearing(V.between.at(c));
+	return { V.before.at(c), V.traction.at(c), normal, V.press[c], V.r2[c], V.d[c], V.friction[c], J, scale, V.touch[c] > 0. };
+}
+/// Trial stress of contact c of a view, and that of the step before as it counts for the account.
+struct ContactTrial {
+	Side<double> trial, before;
+};
+MCA_INLINE ContactTrial contactTrial(Side<double> old, Vec<double> r, Vec<double> u, Vec<double> spin, double dilation, double twoG)
+{
+	const auto a = advance(old, pairMotion(r, u, spin), dilation, twoG);
+	return { a.trial, a.before };
+}
+
+/// Energy of the deviator of an automaton that pairs hold [J].
+template <class S> double deviatorEnergyAt(const S& store, size_t i, double pairs) { return deviatorEnergy(store.materialOf(i).G, store.diameter[i], pairs); }
+/// Mises stress; sum over its links of the squares of the stresses [Pa2].
+template <class S> double equivalentStressAt(const S& store, size_t i, double squares) { return mca::equivalentStress(squares * store.invN[i]); }
+template <class C> bool sidesAre(const C& contacts, size_t n) { return contacts.traction.size() == n; }
+template <class S, class F> bool outOfPlane(const S&, F&&) { return true; }
+/// Takes over what is of this kind only: nothing.
+template <class S> void inheritStress(S&, size_t, const S&, size_t) { }
+}

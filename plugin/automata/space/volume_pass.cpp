@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Pass 1 in space: volume of each automaton from its links, pressure, and what it pushes its neighbours with.
+#include "../../kernels/automaton/force.hpp"
+#include "../../kernels/automaton/limit.hpp"
+#include "../passes.hpp"
+#include "../view.hpp"
+
+namespace mca::automata {
+namespace {
+	/// Sums over the links.
+	struct LinkSums {
+		TensorLanes<blockSize>    dyads;        ///< of r (x) e_k [m]
+		SymmetricLanes<blockSize> directions;   ///< of e_k (x) e_k; not filled where all links hold
+		alignas(64) double nearest2[blockSize]; ///< smallest (r/d)^2 [-]
+	};
+	/// Not inlined: once for all laws.
+	template <bool intact, bool mixed> __attribute__((noinline)) void sumLinks(const BlockView& V, LinkSums& to)
+	{
+		for (int g = 0; g < blockSize; g += lanes) {
+			const Vec<v8> own = load(V.position, g), none {};
+			const m8      bits = intact ? m8 {} : widen(V.flags + g);
+			Tensor<v8>    sum = {};
+			Symmetric<v8> e = {};
+			v8            nearest = splat(1e300);
+#pragma GCC unroll 12
+			for (int k = 0; k < nLinks; k++) {
+				const m8       on = holding(bits, k);
+				const int32_t* j  = V.others(k, g);
+				const Vec<v8>  r  = choose<intact>(on, gatherPosition(V.node, j) - own, none);
+				v8             perD2 = splat(1. / (V.d * V.d));
+				if (mixed)
+					for (int l = 0; l < lanes; l++) perD2[l] = 1. / sqr(0.5 * (V.d + V.diameterOfAll[j[l]]));
+				nearest = min(nearest, choose<intact>(on, dot(r, r) * perD2, splat(1.)));
+				if (!intact) addDirection(e, k, on ? splat(1.) : splat(0.));
+				addDyad(sum, k, r);
+			}
+			to.dyads.setLanes(g, sum), store(to.nearest2 + g, nearest);
+			if (!intact) to.directions.setLanes(g, e);
+		}
+	}
+	/// Volumes that contacts alone would give, and what they push with.
+	template <EosKind law> void contactShares(const BlockView& V, const VolumeConstants<law>& c, const double* contactSum, BlockResult& out)
+	{
+		double stiffest = out.stiffest;
+		int    clampCount = 0;
+#pragma omp simd reduction(max : stiffest) reduction(+ : clampCount)
+		for (int l = 0; l < blockSize; l++) {
+			const double J = contactRatio(contactSum[l]), cell = contactCell(V.d, V.cell[l], V.factor[l]);
+			V.h[l]         = pressureShare<ofContacts(VolumeRule::affine)>(pressure<law>(c.eos, J - 1.), J, cell * (1. / nLinks));
+			stiffest       = max(stiffest, stiffness(c, J) * (cell / V.cell[l]));
+			clampCount += J - 1. < c.clampAt ? 1 : 0;
+		}
+		out.stiffest = stiffest, out.clamped += clampCount;
+	}
+	template <bool intact, bool mixed, EosKind law> void run(const BlockView& V, const double* contactSum, double perMove, bool init, BlockResult& out)
+	{
+		constexpr bool             hot = LawOf<law>::heats;
+		const VolumeConstants<law> c(V.material, V.d);
+		const BulkViscosity        viscosity(V.material, V.d, perMove);
+		LinkSums                   L;
+		sumLinks<intact, mixed>(V, L);
+		for (int l = 0; init && l < blockSize; l++) {
+			const AffineRest r = affineRest(c, L.dyads.at(l));
+			V.factor[l] = r.factor, V.rest[l] = r.rest;
+		}
+		double nearest = 1e300, stiffest = 0, closing = 0, widest = 1.;
+		int    clampCount = 0, badCount = 0;
+#pragma omp simd reduction(max : stiffest, closing, widest) reduction(+ : clampCount, badCount) reduction(min : nearest)
+		for (int l = 0; l < blockSize; l++) {
+			const Tensor<double>    F = L.dyads.at(l);
+			const Symmetric<double> e = intact ? isotropic(Lattice::spread) : L.directions.at(l);
+			const double            J = affineRatio(c, F, V.factor[l], V.rest[l], contactSum ? contactSum[l] : 0.), Jo = init ? J : V.J[l];
+			const PressureState     p = pressureStep(c, J, Jo, { V.P[l], hot ? V.heat[l] : 0. }, V.factor[l] > 0.);
+			const double            slope = volumeSlope(c, F, e, V.factor[l]);
+			stiffest    = max(stiffest, affineStiffness(c, J, slope, L.nearest2[l] * c.d2, false));
+			V.dTheta[l] = dilation(J, Jo), V.J[l] = J, V.P[l] = p.P;
+			const double q = V.factor[l] > 0. ? viscosity.pressure(V.dTheta[l], slope) : 0.;
+			V.viscous[l]   = perMove > 0. ? q : V.viscous[l]; // forces once more without a move: as before
+			if (hot) V.heat[l] = p.e;
+			L.dyads.set(l, affinePush(c, F, V.factor[l]));
+			closing = max(closing, -V.dTheta[l]);
+			widest  = max(widest, J);
+			nearest = min(nearest, L.nearest2[l]);
+			clampCount += J - 1. < c.clampAt ? 1 : 0;
+			badCount += validVolume(J) ? 0 : 1;
+		}
+		for (int g = 0; g < blockSize; g += lanes) scatter(V.push + pushSize * g, pushSize, L.dyads.lanes(g));
+		out.nearest = nearest, out.stiffest = stiffest, out.closing = closing, out.widest = widest, out.clamped = clampCount;
+		if (contactSum) contactShares(V, c, contactSum, out);
+		for (int l = 0; badCount && l < V.block.count && out.bad < 0; l++)
+			if (!validVolume(V.J[l])) out.bad = int64_t(V.base) + l;
+	}
+}
+
+void volumePass(Store& S, size_t b, VolumeRule, const Extra& X, bool init, BlockResult& out)
+{
+	prefetchRecords(S, b);
+	const BlockView V(S, b);
+	const double*   contactSum = V.block.contact && X.contactSum ? X.contactSum + V.base : nullptr;
+	dispatch(V.material.eos.kind, [&](auto law) {
+		choices([&](auto whole, auto mixed) { run<whole.value && !mixed.value, mixed.value, law.value>(V, contactSum, X.perMove, init, out); },
+		        V.block.intact, V.block.mixed);
+	});
+	for (int l = 0; l < blockSize; l++) V.record[nodeSize * l + dilationAt] = V.dTheta[l];
+}
+}

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Vectors and tensors of space, for one automaton (T = double) or eight side by side (T = v8). The one place that knows their components; what is written out
+// here stays in registers, whatever the compiler thinks of loops.
+#pragma once
+#include "../dimension.hpp"
+#include "../simd.hpp"
+#include <ostream>
+
+namespace mca {
+inline namespace MCA_SPACE {
+
+using mca::fma, mca::load, mca::store; // those of numbers, beside those of vectors below
+
+template <class T> struct Vec {
+	T                   component[dim];
+	MCA_INLINE T&       operator[](int c) { return component[c]; }
+	MCA_INLINE const T& operator[](int c) const { return component[c]; }
+};
+/// Columns: the tensor times the unit vectors.
+template <class T> struct Tensor {
+	Vec<T> column[dim];
+};
+template <class T> struct Symmetric {
+	T xx, yy, zz, yz, zx, xy;
+};
+
+template <class T> MCA_INLINE Vec<T> operator-(Vec<T> a) { return { -a[0], -a[1], -a[2] }; }
+template <class T> MCA_INLINE Vec<T> operator+(Vec<T> a, Vec<T> b) { return { a[0] + b[0], a[1] + b[1], a[2] + b[2] }; }
+template <class T> MCA_INLINE Vec<T> operator-(Vec<T> a, Vec<T> b) { return { a[0] - b[0], a[1] - b[1], a[2] - b[2] }; }
+template <class T> MCA_INLINE Vec<T>   operator*(Vec<T> a, T f) { return { a[0] * f, a[1] * f, a[2] * f }; }
+template <class T> MCA_INLINE void     operator+=(Vec<T>& a, Vec<T> b) { a[0] += b[0], a[1] += b[1], a[2] += b[2]; }
+template <class F, class T> MCA_INLINE Vec<T> fma(F f, Vec<T> a, Vec<T> b) { return { fma(f, a[0], b[0]), fma(f, a[1], b[1]), fma(f, a[2], b[2]) }; }
+template <class T> MCA_INLINE T               dot(Vec<T> a, Vec<T> b) { return fma(a[0], b[0], fma(a[1], b[1], a[2] * b[2])); }
+template <class T> MCA_INLINE Vec<T> cross(Vec<T> a, Vec<T> b)
+{
+	return { fma(a[1], b[2], -a[2] * b[1]), fma(a[2], b[0], -a[0] * b[2]), fma(a[0], b[1], -a[1] * b[0]) };
+}
+/// some vector of this length
+template <class T> MCA_INLINE Vec<T> ofLength(T d) { return { d, T {}, T {} }; }
+// every product rounded: the same bits on machines with and without fma
+inline double      plainDot(Vec<double> a, Vec<double> b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+inline double      plainSquare(Vec<double> a) { return plainDot(a, a); }
+inline Vec<double> plainCross(Vec<double> a, Vec<double> b) { return { a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0] }; }
+/// sum of the magnitudes of the components
+inline double        sumOfMagnitudes(Vec<double> a) { return std::fabs(a[0]) + std::fabs(a[1]) + std::fabs(a[2]); }
+inline bool          isZero(Vec<double> a) { return a[0] == 0 && a[1] == 0 && a[2] == 0; }
+inline Vec<bool>     everyWay() { return { true, true, true }; }
+inline std::ostream& operator<<(std::ostream& s, Vec<double> a) { return s << "(" << a[0] << ", " << a[1] << ", " << a[2] << ")"; }
+
+/// What turns: a spin, an angle, a torque.
+template <class T> using Turn = Vec<T>;
+constexpr int     turns = 3; ///< its components
+inline Turn<bool> everyTurn() { return everyWay(); }
+
+template <class T> MCA_INLINE Tensor<T> operator*(const Tensor<T>& a, T f) { return { a.column[0] * f, a.column[1] * f, a.column[2] * f }; }
+template <class T> MCA_INLINE Tensor<T> operator+(const Tensor<T>& a, const Tensor<T>& b)
+{
+	return { a.column[0] + b.column[0], a.column[1] + b.column[1], a.column[2] + b.column[2] };
+}
+template <class T> MCA_INLINE T determinant(const Tensor<T>& A) { return dot(A.column[0], cross(A.column[1], A.column[2])); }
+/// d(det A)/dA
+template <class T> MCA_INLINE Tensor<T> cofactor(const Tensor<T>& A)
+{
+	return { cross(A.column[1], A.column[2]), cross(A.column[2], A.column[0]), cross(A.column[0], A.column[1]) };
+}
+/// f times the unit tensor
+inline Symmetric<double> isotropic(double f) { return { f, f, f, 0., 0., 0. }; }
+
+/// Vectors in memory: a plane of numbers per component.
+template <class P> struct Planes {
+	P*            plane[dim];
+	MCA_INLINE P* operator[](int c) const { return plane[c]; }
+	MCA_INLINE Vec<double> at(size_t i) const { return { plane[0][i], plane[1][i], plane[2][i] }; }
+	MCA_INLINE void        set(size_t i, Vec<double> v) const { plane[0][i] = v[0], plane[1][i] = v[1], plane[2][i] = v[2]; }
+};
+template <class P> MCA_INLINE Vec<v8> load(const Planes<P>& p, size_t i) { return { load(p.plane[0] + i), load(p.plane[1] + i), load(p.plane[2] + i) }; }
+MCA_INLINE void                       store(const Planes<double>& p, size_t i, Vec<v8> v)
+{
+	store(p.plane[0] + i, v[0]), store(p.plane[1] + i, v[1]), store(p.plane[2] + i, v[2]);
+}
+
+/// One automaton of eight.
+MCA_INLINE Vec<double> laneOf(const Vec<v8>& a, int l) { return { a[0][l], a[1][l], a[2][l] }; }
+
+/// Tensors of n automata, a plane per entry.
+template <int n> struct TensorLanes {
+	alignas(64) double entry[dim * dim][n];
+	MCA_INLINE Vec<double>    columnAt(int c, int l) const { return { entry[3 * c][l], entry[3 * c + 1][l], entry[3 * c + 2][l] }; }
+	MCA_INLINE Tensor<double> at(int l) const { return { columnAt(0, l), columnAt(1, l), columnAt(2, l) }; }
+	MCA_INLINE void           setColumn(int c, int l, Vec<double> v) { entry[3 * c][l] = v[0], entry[3 * c + 1][l] = v[1], entry[3 * c + 2][l] = v[2]; }
+	MCA_INLINE void           set(int l, const Tensor<double>& t)
+	{
+		for (int c = 0; c < dim; c++) setColumn(c, l, t.column[c]);
+	}
+	MCA_INLINE Vec<v8>        lanesOf(int c, int g) const { return { load(entry[3 * c] + g), load(entry[3 * c + 1] + g), load(entry[3 * c + 2] + g) }; }
+	MCA_INLINE Tensor<v8> lanes(int g) const { return { lanesOf(0, g), lanesOf(1, g), lanesOf(2, g) }; }
+	MCA_INLINE void       setLanes(int g, const Tensor<v8>& t)
+	{
+		for (int c = 0; c < dim; c++)
+			for (int q = 0; q < dim; q++) store(entry[3 * c + q] + g, t.column[c][q]);
+	}
+};
+template <int n> struct SymmetricLanes {
+	alignas(64) double xx[n], yy[n], zz[n], yz[n], zx[n], xy[n];
+	MCA_INLINE Symmetric<double> at(int l) const { return { xx[l], yy[l], zz[l], yz[l], zx[l], xy[l] }; }
+	MCA_INLINE void              setLanes(int g, const Symmetric<v8>& t)
+	{
+		store(xx + g, t.xx), store(yy + g, t.yy), store(zz + g, t.zz), store(yz + g, t.yz), store(zx + g, t.zx), store(xy + g, t.xy);
+	}
+};
+
+// Records of eight automata, read and written by four numbers at once: those of tensors have twelve, the last three unused.
+constexpr int   tensorSize = 12;
+MCA_INLINE void gather(const double* base, int stride, const int32_t* at, Vec<v8>& a)
+{
+	v8 unused;
+	gather4(base, stride, at, a[0], a[1], a[2], unused);
+}
+MCA_INLINE void gather(const double* base, int stride, const int32_t* at, Tensor<v8>& t)
+{
+	Vec<v8>*a = t.column, unused;
+	gather4(base, stride, at, a[0][0], a[0][1], a[0][2], a[1][0]), gather4(base + 4, stride, at, a[1][1], a[1][2], a[2][0], a[2][1]);
+	gather4(base + 8, stride, at, a[2][2], unused[0], unused[1], unused[2]);
+}
+MCA_INLINE void scatter(double* base, int stride, const Tensor<v8>& t)
+{
+	const Vec<v8>* a = t.column;
+	scatter4(base, stride, a[0][0], a[0][1], a[0][2], a[1][0]), scatter4(base + 4, stride, a[1][1], a[1][2], a[2][0], a[2][1]);
+	scatter4(base + 8, stride, a[2][2], v8 {}, v8 {}, v8 {});
+}
+
+// Cells of a regular grid.
+/// number of a cell among `count` cells per direction
+inline size_t cellNumber(Vec<int> cell, Vec<int> count) { return (size_t(cell[2]) * count[1] + cell[1]) * count[0] + cell[0]; }
+/// f(first, last) for each run of cells with consecutive numbers in the box from `low` to `high`
+template <class F> MCA_INLINE void eachRun(Vec<int> low, Vec<int> high, F&& f)
+{
+	for (int z = low[2]; z <= high[2]; z++)
+		for (int y = low[1]; y <= high[1]; y++)
+			if (f(Vec<int> { low[0], y, z }, Vec<int> { high[0], y, z })) return;
+}
+/// f(offset) for a cell and those around it
+template <class F> MCA_INLINE void eachNeighbour(F&& f)
+{
+	for (int64_t x = -1; x <= 1; x++)
+		for (int64_t y = -1; y <= 1; y++)
+			for (int64_t z = -1; z <= 1; z++) f(Vec<int64_t> { x, y, z });
+}
+}
+}
