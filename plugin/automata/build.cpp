@@ -245,7 +245,7 @@ void Solver::build(const std::vector<Automaton>& automata, const std::vector<Mat
 	for (auto& m : materials)
 		flows |= m.yield.yields() && o.volumeRule == VolumeRule::affine;
 	filterTime = 0;
-	tied.clear(), tiedVelocity = {}, tiedSpin.clear(), watch.clear(), contactAdjacent.clear();
+	tied.clear(), tiedVelocity = {}, tiedSpin.clear(), watch.clear(), searched = {}, contactAdjacent.clear();
 	time = lastDt = lastMove = dtLimit = contactSpeed2 = 0, lastSort = 0;
 	unsettled.clear();
 	makeBlocks(automata);

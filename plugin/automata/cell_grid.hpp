@@ -4,27 +4,27 @@
 #include "vectors.hpp"
 #include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 
 namespace mca::automata {
 
-struct CellGrid {
-	Vec<double>          low {}, high {}; ///< corners of the box that holds all [m]
-	double               inv = 0;         ///< cells per length [1/m]
-	Vec<int>             count {};
-	std::vector<int32_t> begin, item; ///< a list per cell by counting sort
-	Vectors              position;    ///< in the order of `item`: the cells around a point are a few runs of it
+/// The cells alone: which one a place is in.
+struct Cells {
+	Vec<double> low {}, high {}; ///< corners of the box that holds all [m]
+	double      inv = 0;         ///< cells per length [1/m]
+	Vec<int>    count {};
 
-	/// Cells of at least `size` [m]; names: what `item` calls the points, in the order of the points.
-	CellGrid(const Vectors& points, const std::vector<int32_t>& names, double size)
+	Cells() = default;
+	/// Cells of at least `size` [m] around these points.
+	Cells(const Vectors& points, double size)
 	{
-		const size_t n = points.size();
 		for (int c = 0; c < dim; c++) {
 			low[c] = 1e300, high[c] = -1e300;
 			for (double x : points[c])
 				low[c] = std::min(low[c], x), high[c] = std::max(high[c], x);
 		}
 		// debris far away must not make the grid larger than the list that it serves
-		const double most  = 8. * double(n) + 1024.;
+		const double most  = 8. * double(points.size()) + 1024.;
 		const auto   cells = [&] {
                         double all = 1;
                         for (int c = 0; c < dim; c++)
@@ -33,24 +33,17 @@ struct CellGrid {
 		};
 		while (cells() > most)
 			size *= 1.25;
-		inv        = 1. / size;
+		inv = 1. / size;
+		for (int c = 0; c < dim; c++)
+			count[c] = int((high[c] - low[c]) * inv) + 1;
+	}
+	size_t cells() const
+	{
 		size_t all = 1;
 		for (int c = 0; c < dim; c++)
-			count[c] = int((high[c] - low[c]) * inv) + 1, all *= size_t(count[c]);
-		begin.assign(all + 1, 0);
-		std::vector<int32_t> at(n);
-		for (size_t q = 0; q < n; q++)
-			at[q] = int32_t(cellOf(points.at(q))), begin[at[q] + 1]++;
-		for (size_t c = 1; c < begin.size(); c++)
-			begin[c] += begin[c - 1];
-		position.resize(n), item.resize(n);
-		std::vector<int32_t> next(begin.begin(), begin.end() - 1);
-		for (size_t q = 0; q < n; q++) {
-			const int32_t p = next[at[q]]++;
-			item[p]         = names[q], position.set(p, points.at(q));
-		}
+			all *= size_t(count[c]);
+		return all;
 	}
-	size_t cells() const { return begin.size() - 1; }
 	/// The cell of a place, moved by so many cells, within the grid.
 	Vec<int> cell(Vec<double> x, int by) const
 	{
@@ -60,6 +53,14 @@ struct CellGrid {
 		return at;
 	}
 	size_t cellOf(Vec<double> x) const { return cellNumber(cell(x, 0), count); }
+	/// Whether two places are in one cell or in two next to each other.
+	bool adjacent(Vec<double> x, Vec<double> y) const
+	{
+		const Vec<int> a = cell(x, 0), b = cell(y, 0);
+		for (int c = 0; c < dim; c++)
+			if (std::abs(a[c] - b[c]) > 1) return false;
+		return true;
+	}
 	/// Whether a place is so far outside that the cells around it hold nothing.
 	bool away(Vec<double> x) const
 	{
@@ -71,6 +72,34 @@ struct CellGrid {
 	template <class F> void eachRunAround(Vec<double> x, F&& f) const
 	{
 		eachRun(cell(x, -1), cell(x, 1), [&](Vec<int> first, Vec<int> last) { return f(cellNumber(first, count), cellNumber(last, count)); });
+	}
+};
+
+struct CellGrid : Cells {
+	std::vector<int32_t> begin, item; ///< a list per cell by counting sort
+	Vectors              position;    ///< in the order of `item`: the cells around a point are a few runs of it
+
+	/// Cells of at least `size` [m]; names: what `item` calls the points, in the order of the points.
+	CellGrid(const Vectors& points, const std::vector<int32_t>& names, double size)
+	        : CellGrid(Cells(points, size), points, names)
+	{
+	}
+	CellGrid(const Cells& cells, const Vectors& points, const std::vector<int32_t>& names)
+	        : Cells(cells)
+	{
+		const size_t n = points.size();
+		begin.assign(Cells::cells() + 1, 0);
+		std::vector<int32_t> at(n);
+		for (size_t q = 0; q < n; q++)
+			at[q] = int32_t(cellOf(points.at(q))), begin[at[q] + 1]++;
+		for (size_t c = 1; c < begin.size(); c++)
+			begin[c] += begin[c - 1];
+		position.resize(n), item.resize(n);
+		std::vector<int32_t> next(begin.begin(), begin.end() - 1);
+		for (size_t q = 0; q < n; q++) {
+			const int32_t p = next[at[q]]++;
+			item[p]         = names[q], position.set(p, points.at(q));
+		}
 	}
 };
 }

@@ -160,7 +160,7 @@ namespace {
 		std::vector<char> seen(S.size(), 0);
 		for (size_t r = 0; r < C.rows(); r++) {
 			const size_t i = size_t(C.rowOwner[r]);
-			need(!seen[i], "two rows of contacts of one automaton");
+			need(!seen[i] && (waiting || r == 0 || C.rowOwner[r - 1] < C.rowOwner[r]), "two rows of contacts of one automaton");
 			seen[i] = 1;
 			for (int32_t c = C.rowBegin[r]; c < C.rowBegin[r + 1]; c++) need(size_t(C.owner[size_t(c)]) == i, "a row of contacts");
 		}
@@ -206,7 +206,7 @@ void Solver::checkState() const
 	for (const Vectors* v : { &accountForce.volumetric, &accountForce.viscous })
 		for (const Doubles& plane : *v) sum(plane, true);
 	for (const Block& b : S.blocks) need(!b.contact || scratch.sum.size() == n, "a block with contacts");
-	need(within(watch, n) && sized(searched, watch.size()) && allOf(finite, searched), "the list of watched automata");
+	need(within(watch, n) && (sized(searched, n) || (watch.empty() && sized(searched, 0))) && allOf(finite, searched), "the list of watched automata");
 	need(offsets(adjacentBegin, blocks, adjacent.size()) && within(adjacent, blocks), "the neighbours of blocks");
 	need(within(awake, blocks), "the list of blocks awake");
 	for (size_t k = 1; k < awake.size(); k++) need(awake[k] > awake[k - 1], "the list of blocks awake");
@@ -224,8 +224,8 @@ void Solver::checkState() const
 	need(contactSpeed2 >= 0 && contactSpeed2 < largest, "a speed");
 	const auto* booked = reinterpret_cast<const double*>(&sums);
 	for (size_t k = 0; k < sizeof sums / sizeof(double); k++) need(stopped || std::fabs(booked[k]) < largest, "the account of energy");
-	need(counters.steps >= 0 && counters.searches >= 0 && counters.blockSteps >= 0 && counters.brokenLinks >= 0 && counters.clamped >= 0
-	             && counters.sorts >= 0 && lastSort >= 0,
+	need(counters.steps >= 0 && counters.searches >= 0 && counters.localSearches >= 0 && counters.blockSteps >= 0 && counters.brokenLinks >= 0
+	             && counters.clamped >= 0 && counters.sorts >= 0 && lastSort >= 0,
 	     "a counter");
 	for (double v : { counters.deepest, counters.nsDensity, counters.nsStress, counters.nsForce, counters.nsContact, counters.nsSearch,
 	                  counters.nsIntegrate, counters.nsFracture })

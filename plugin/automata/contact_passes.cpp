@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "../threads.hpp"
-#include "contacts.hpp"
+#include "contact_pairs.hpp"
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -185,7 +185,7 @@ void contactReciprocals(const Store& S, Contacts& C)
 	C.perTwoG.resize(C.size()), C.perOwnG.resize(C.size());
 	for (size_t c = 0; c < C.size(); c++) {
 		const double G = S.materials[S.species[S.speciesOf(C.owner[c])].material].G;
-		C.perTwoG[c] = C.twoG[c] > 0. ? 1. / C.twoG[c] : 0., C.perOwnG[c] = G > 0. ? 1. / G : 0.;
+		C.perTwoG[c] = reciprocal(C.twoG[c]), C.perOwnG[c] = reciprocal(G);
 	}
 }
 

@@ -1,34 +1,27 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "../threads.hpp"
 #include "cell_grid.hpp"
-#include "contacts.hpp"
+#include "contact_pairs.hpp"
 #include <algorithm>
 #include <cmath>
 
 namespace mca::automata {
 namespace {
-	bool linked(const Store& S, int32_t i, int32_t j)
-	{
-		for (int k = 0; k < nLinks; k++)
-			if (holds(S.flags[i], k) && S.neighbour[linkSlot(i, k)] == j) return true;
-		return false;
-	}
-	bool   exposed(const Store& S, int32_t i) { return S.flags[i] & exposedBit; }
-	bool   touching(const Store& S, int32_t i, int32_t j) { return mayTouch(S.flags[i], S.flags[j], S.group[i] == S.group[j]); }
-	double reach2(const Store& S, int32_t i, int32_t j, double skin) { return sqr(S.restDistance(i, j) * (1. + skin)); }
-	Vectors positions(const Store& S, const std::vector<int32_t>& who)
+	bool    exposed(const Store& S, int32_t i) { return S.flags[i] & exposedBit; }
+	/// Places of some.
+	Vectors of(const std::vector<int32_t>& who, const Vectors& place)
 	{
 		Vectors at;
 		at.resize(who.size());
 		for (size_t q = 0; q < who.size(); q++)
-			at.set(q, S.position.at(who[q]));
+			at.set(q, place.at(who[q]));
 		return at;
 	}
 	/// Calls f(j) for all automata of the grid that are closer to i than (1 + skin) times their rest distance, i included, until it returns true.
 	/// The size of the cells is at least the largest such distance.
-	template <class F> void around(const Store& S, const CellGrid& grid, int32_t i, double skin, F&& f)
+	template <class F> void around(const Store& S, const Vectors& place, const CellGrid& grid, int32_t i, double skin, F&& f)
 	{
-		const Vec<double> x    = S.position.at(i);
+		const Vec<double> x    = place.at(i);
 		const auto        at   = grid.position.planes();
 		const double      far2 = 1. / sqr(grid.inv);
 		grid.eachRunAround(x, [&](size_t first, size_t last) {
@@ -64,7 +57,7 @@ namespace {
 		bool may(size_t cell, int32_t group) const { return by[cell] != nothing && by[cell] != group; }
 	};
 	/// Interior automata that something foreign is about to reach, in the order of the arrays.
-	std::vector<int32_t> reached(const Store& S, const CellGrid& grid, double skin, int threads)
+	std::vector<int32_t> reached(const Store& S, const Vectors& place, const CellGrid& grid, double skin, int threads)
 	{
 		const Reaching                    reaching(S, grid);
 		std::vector<std::vector<int32_t>> parts(threads);
@@ -73,9 +66,9 @@ namespace {
 			for (long b = nb * t / threads; b < nb * (t + 1) / threads; b++)
 				for (int l = 0; l < S.blocks[b].count; l++) {
 					const int32_t     i = int32_t(b * blockSize + l);
-					const Vec<double> x = S.position.at(i);
+					const Vec<double> x = place.at(i);
 					if (exposed(S, i) || grid.away(x) || !reaching.may(grid.cellOf(x), S.group[i])) continue;
-					around(S, grid, i, skin, [&](int32_t j) {
+					around(S, place, grid, i, skin, [&](int32_t j) {
 						if (!touching(S, j, i)) return false;
 						parts[t].push_back(i);
 						return true;
@@ -87,50 +80,24 @@ namespace {
 			all.insert(all.end(), p.begin(), p.end());
 		return all;
 	}
-	/// stress of a pair before: an old contact, or a link that has just broken
-	void carryOver(const Store& S, const Contacts& old, const std::vector<int32_t>& oldRow, int32_t i, int32_t j, Side<double>& stress, double& rest)
+	/// What an old contact of the pair held, or a link that has just broken.
+	void carryOver(const Store& S, const Contacts& old, const std::vector<int32_t>& oldRow, Contacts& C, size_t c)
 	{
+		const int32_t i = C.owner[c], j = C.other[c];
 		if (!oldRow.empty() && oldRow[i] >= 0)
-			for (int32_t c = old.rowBegin[oldRow[i]]; c < old.rowBegin[oldRow[i] + 1]; c++)
-				if (old.other[c] == j) {
-					stress = sideOf(old, c), rest = old.rest[c];
+			for (int32_t q = old.rowBegin[oldRow[i]]; q < old.rowBegin[oldRow[i] + 1]; q++)
+				if (old.other[q] == j) {
+					setSide(C, c, sideOf(old, size_t(q))), C.rest[c] = old.rest[q];
 					return;
 				}
-		for (int k = 0; k < nLinks; k++)
-			if (hasHeld(S.flags[i], k) && !holds(S.flags[i], k) && S.neighbour[linkSlot(i, k)] == j)
-				stress = S.stressAt(linkSlot(i, k));
-	}
-	/// What a pair of species has in common.
-	struct PairConstants {
-		double d, arm, twoG, friction, viscLinear, viscQuadratic;
-	};
-	std::vector<PairConstants> pairConstants(const Store& S)
-	{
-		std::vector<PairConstants> table;
-		for (const Species& a : S.species)
-			for (const Species& b : S.species) {
-				const Material &m = S.materials[a.material], &o = S.materials[b.material];
-				PairConstants   p { 0.5 * (a.d + b.d), arm(a.d, b.d), 0, std::min(m.friction, o.friction), 0, 0 };
-				const PairViscosity v = viscosityOf(m, o);
-				p.twoG = seriesTwoG(m.G, o.G, p.arm), p.viscLinear = v.linear, p.viscQuadratic = v.quadratic;
-				table.push_back(p);
-			}
-		return table;
-	}
-	void constants(const Store& S, const std::vector<PairConstants>& table, Contacts& C, size_t c)
-	{
-		const int32_t        i = C.owner[c], j = C.other[c];
-		const PairConstants& p = table[size_t(S.speciesOf(i)) * S.species.size() + S.speciesOf(j)];
-		C.d[c]                 = p.d;
-		C.rest[c]              = restAtStart(C.d[c], S.distance2(i, j));
-		C.arm[c] = p.arm, C.twoG[c] = p.twoG, C.friction[c] = p.friction, C.viscLinear[c] = p.viscLinear, C.viscQuadratic[c] = p.viscQuadratic;
+		takeLinkStress(S, C, c);
 	}
 	/// Rows of some of the owners.
 	struct RowPart {
 		std::vector<int32_t> owner, other, rowOwner, rowSize;
 	};
 	/// Contacts of these automata in one part per thread.
-	std::vector<RowPart> findRows(const Store& S, const CellGrid& grid, const std::vector<int32_t>& who, double skin, int threads)
+	std::vector<RowPart> findRows(const Store& S, const Vectors& place, const CellGrid& grid, const std::vector<int32_t>& who, double skin, int threads)
 	{
 		std::vector<RowPart> parts(threads);
 		const long        n = long(who.size());
@@ -140,7 +107,7 @@ namespace {
 			for (long q = n * t / threads; q < n * (t + 1) / threads; q++) {
 				const int32_t i  = who[q];
 				row.clear();
-				around(S, grid, i, skin, [&](int32_t j) {
+				around(S, place, grid, i, skin, [&](int32_t j) {
 					if (j != i && touching(S, i, j) && !linked(S, i, j)) row.push_back(j);
 					return false;
 				});
@@ -156,37 +123,37 @@ namespace {
 	}
 }
 
-std::vector<int32_t> watched(const Store& S, const std::vector<int32_t>& exposed, double cell)
+std::vector<int32_t> watched(const Store& S, const Vectors& place, const std::vector<int32_t>& exposed, const Cells& cells)
 {
 	std::vector<int32_t> all = exposed;
 	if (exposed.empty()) return all;
-	const CellGrid grid(positions(S, exposed), exposed, cell);
+	const CellGrid grid(cells, of(exposed, place), exposed);
 	const Reaching reaching(S, grid);
 	for (size_t b = 0; b < S.blocks.size(); b++)
 		for (int l = 0; l < S.blocks[b].count; l++) {
 			const int32_t     i = int32_t(b * blockSize) + l;
-			const Vec<double> x = S.position.at(i);
+			const Vec<double> x = place.at(i);
 			if (!(S.flags[i] & exposedBit) && !grid.away(x) && reaching.may(grid.cellOf(x), S.group[i])) all.push_back(i);
 		}
 	std::inplace_merge(all.begin(), all.begin() + long(exposed.size()), all.end());
 	return all;
 }
 
-void searchContacts(Store& S, const std::vector<int32_t>& exposed, Contacts& C, Contacts& old, double skin, int threads)
+void searchContacts(Store& S, const Vectors& place, const std::vector<int32_t>& exposed, Contacts& C, Contacts& old, double skin, int threads)
 {
 	for (auto& b : S.blocks)
 		b.contact = false;
 	std::swap(old, C); // arrays keep their memory: with two lists by turns no search allocates
 	C.rowBegin.assign(1, 0), C.rowOwner.clear(), C.owner.clear(), C.other.clear();
 	if (exposed.empty()) return C.eachArray([&](auto& v, Presence) { v.clear(); });
-	const double               cell = S.largestDiameter() * (1. + skin);
-	CellGrid                   grid(positions(S, exposed), exposed, cell);
+	const double               cell = longestReach(S, skin);
+	CellGrid                   grid(of(exposed, place), exposed, cell);
 	std::vector<int32_t>       who  = exposed;
-	const std::vector<int32_t> more = reached(S, grid, skin, threads);
+	const std::vector<int32_t> more = reached(S, place, grid, skin, threads);
 	if (more.size()) {
 		who.insert(who.end(), more.begin(), more.end());
 		std::inplace_merge(who.begin(), who.begin() + long(exposed.size()), who.end());
-		grid = CellGrid(positions(S, who), who, cell);
+		grid = CellGrid(of(who, place), who, cell);
 	}
 	std::vector<int32_t> oldRow;
 	if (old.rows()) {
@@ -194,7 +161,7 @@ void searchContacts(Store& S, const std::vector<int32_t>& exposed, Contacts& C, 
 		for (size_t r = 0; r < old.rows(); r++)
 			oldRow[old.rowOwner[r]] = int32_t(r);
 	}
-	const auto parts = findRows(S, grid, who, skin, threads);
+	const auto parts = findRows(S, place, grid, who, skin, threads);
 	for (const RowPart& P : parts) {
 		C.owner.insert(C.owner.end(), P.owner.begin(), P.owner.end());
 		C.other.insert(C.other.end(), P.other.begin(), P.other.end());
@@ -213,12 +180,8 @@ void searchContacts(Store& S, const std::vector<int32_t>& exposed, Contacts& C, 
 			const int32_t j = C.other[c];
 			for (int32_t q = C.rowBegin[rowOf[j]]; q < C.rowBegin[rowOf[j] + 1]; q++)
 				if (C.other[q] == C.owner[c]) C.reverse[c] = q;
-			constants(S, table, C, c);
-			Side<double> stress {};
-			carryOver(S, old, oldRow, C.owner[c], j, stress, C.rest[c]);
-			setSide(C, c, stress);
+			start(S, table, C, c), carryOver(S, old, oldRow, C, c);
 		}
 	});
-	contactReciprocals(S, C);
 }
 }

@@ -2,6 +2,7 @@
 // Contacts: pairs that are not linked. The search looks only at automata that may touch something (rim, broken, flowing);
 // the passes run over half-contacts as one flat list and add up the rows of each owner in a fixed order.
 #pragma once
+#include "cell_grid.hpp"
 #include "passes.hpp"
 
 namespace mca::automata {
@@ -33,12 +34,32 @@ struct ContactScratch {
 	}
 };
 
-/// The exposed automata, and the interior ones that have something foreign in their cell of this size or in one around it, in the order of the arrays.
-std::vector<int32_t> watched(const Store& S, const std::vector<int32_t>& exposed, double cell);
-/// New list of contacts from all exposed automata (in the order of the arrays) closer than (1 + skin) times their rest distance; stresses of pairs that go on
-/// are kept. `old` becomes the list before.
+/// Boxes around the automata of each block: whose are near a place is found without looking at all.
+struct BlockBoxes {
+	Vectors low, high; ///< [m]
+	/// Around these places.
+	void make(const Store& S, const Vectors& at);
+	/// f(block) for those that have a point within `reach` in each direction.
+	template <class F> void eachNear(Vec<double> x, double reach, F&& f) const
+	{
+		for (size_t b = 0; b < low.size(); b++) {
+			bool near = true;
+			for (int c = 0; c < dim; c++)
+				near &= x[c] >= low[c][b] - reach && x[c] <= high[c][b] + reach;
+			if (near) f(b);
+		}
+	}
+};
+
+/// The exposed automata, and the interior ones that have something foreign in their cell or in one around it, in the order of the arrays.
+std::vector<int32_t> watched(const Store& S, const Vectors& place, const std::vector<int32_t>& exposed, const Cells& cells);
+/// New list of contacts from all exposed automata (in the order of the arrays) that were closer than (1 + skin) times their rest distance when they were at
+/// these places; stresses of pairs that go on are kept. `old` becomes the list before.
 /// Deterministic: rows in the order of the arrays, entries of a row in the order of their callers' numbers.
-void searchContacts(Store& S, const std::vector<int32_t>& exposed, Contacts& C, Contacts& old, double skin, int threads);
+void searchContacts(Store& S, const Vectors& place, const std::vector<int32_t>& exposed, Contacts& C, Contacts& old, double skin, int threads);
+/// The list that searchContacts() would make of the same places after links have broken, from the one before. ends: of those links, ascending;
+/// boxes: around the places.
+void addContacts(Store& S, const Vectors& at, const BlockBoxes& boxes, const std::vector<int32_t>& ends, Contacts& C, double skin);
 
 /// Fills perTwoG and perOwnG, which are not part of the saved state.
 void contactReciprocals(const Store& S, Contacts& C);

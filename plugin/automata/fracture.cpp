@@ -49,7 +49,8 @@ bool Solver::breaking() const
 	return any;
 }
 
-void Solver::breakLinks()
+/// Returns the ends of those that broke, ascending.
+std::vector<int32_t> Solver::breakLinks()
 {
 	Store&                                   S = store;
 	std::vector<std::pair<int32_t, int32_t>> pairs; // (automaton, link)
@@ -73,6 +74,7 @@ void Solver::breakLinks()
 	}
 	for (size_t q = 0; q < touched.size(); q++)
 		keepVolume(touched[q], J[q]);
+	return touched;
 }
 
 /// One end of a link that breaks. It stays known as one that has held; its stresses go on in the contact.

@@ -4,6 +4,7 @@
 #include "parallel.hpp"
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace mca::automata {
 
@@ -57,26 +58,24 @@ namespace {
 	};
 }
 
-/// Cells of the watched automata where they were searched.
-void Solver::makeNearCells()
+/// Puts those watched that have no cell yet into the cells where they were searched.
+void Solver::placeInNearCells()
 {
-	std::vector<int32_t> places(watch.size());
-	for (size_t q = 0; q < places.size(); q++) places[q] = int32_t(q);
-	const CellGrid       grid(searched, places, nearCell * store.largestDiameter());
-	std::vector<int32_t> used(grid.cells(), -1);
-	nearCells.of.resize(watch.size()), nearCells.pairs.clear(), nearCells.count = 0;
-	for (size_t c = 0; c < grid.cells(); c++) {
-		if (grid.begin[c] == grid.begin[c + 1]) continue;
-		used[c] = nearCells.count++;
-		for (int32_t p = grid.begin[c]; p < grid.begin[c + 1]; p++) nearCells.of[grid.item[p]] = used[c];
-	}
-	for (size_t c = 0; c < grid.cells(); c++)
-		if (used[c] >= 0)
-			grid.eachRunAround(grid.position.at(grid.begin[c]), [&](size_t first, size_t last) {
+	auto& N = nearCells;
+	if (N.used.empty()) N.used.assign(N.cells.cells(), -1), N.of.clear(), N.pairs.clear(), N.count = 0;
+	for (size_t q = N.of.size(); q < watch.size(); q++) {
+		const Vec<double> x    = watchPlace.at(q);
+		int32_t&          cell = N.used[N.cells.cellOf(x)];
+		if (cell < 0) {
+			N.cells.eachRunAround(x, [&](size_t first, size_t last) {
 				for (size_t a = first; a <= last; a++)
-					if (used[a] > used[c]) nearCells.pairs.push_back({ used[c], used[a] });
+					if (N.used[a] >= 0) N.pairs.push_back({ N.used[a], N.count });
 				return false;
 			});
+			cell = N.count++;
+		}
+		N.of.push_back(cell);
+	}
 }
 
 /// Whether two watched automata may have come nearer to each other since the search by more than `reach` [m], so that a pair that is not listed may touch.
@@ -86,7 +85,7 @@ bool Solver::mayTouch(double reach)
 	const int32_t* who = watch.data();
 	Box            all;
 	for (int c = 0; c < dim; c++) {
-		const double *x = store.position[c].data(), *x0 = searched[c].data();
+		const double *x = store.position[c].data(), *x0 = watchPlace[c].data();
 		double        low = 1e300, high = -1e300;
 #pragma omp simd reduction(max : high) reduction(min : low)
 		for (long q = 0; q < n; q++) {
@@ -98,10 +97,10 @@ bool Solver::mayTouch(double reach)
 	if (n == 0 || all.diagonal2() <= sqr(reach)) return false;
 	// One fast fragment does not make a new search for all: who was in cells next to each other counts, and for others that they were a cell apart.
 	if (all.diagonal2() > sqr((nearCell - 1.) * store.largestDiameter())) return true;
-	if (nearCells.of.size() != watch.size()) makeNearCells();
+	placeInNearCells();
 	std::vector<Box> boxes(size_t(nearCells.count));
 	for (long q = 0; q < n; q++) {
-		const Vec<double> moved = store.position.at(who[q]) - searched.at(q);
+		const Vec<double> moved = store.position.at(who[q]) - watchPlace.at(q);
 		boxes[nearCells.of[q]].add({ moved, moved });
 	}
 	for (const Box& b : boxes)
@@ -114,41 +113,115 @@ bool Solver::mayTouch(double reach)
 	return false;
 }
 
+/// One more, which a search has just not looked at.
+void Solver::watchToo(int32_t i)
+{
+	if (isWatched[size_t(i)]) return;
+	isWatched[size_t(i)] = 1;
+	watch.push_back(i), watchPlace.push_back(searched.at(size_t(i)));
+}
+
+/// The interior automata around i that may touch it: those that watched() finds by it.
+void Solver::watchForeign(int32_t i)
+{
+	const Store&      S = store;
+	const Vec<double> x = searched.at(size_t(i));
+	searchedBoxes.eachNear(x, 2. / nearCells.cells.inv, [&](size_t b) {
+		for (int l = 0; l < S.blocks[b].count; l++) {
+			const size_t j = b * blockSize + size_t(l);
+			const bool   meets = !isWatched[j] && mca::mayTouch(S.flags[size_t(i)], S.flags[j], S.group[size_t(i)] == S.group[j]);
+			if (meets && nearCells.cells.adjacent(x, searched.at(j))) watchToo(int32_t(j));
+		}
+	});
+}
+
+/// Ends of links that broke are exposed, and may be foreign to more than before.
+void Solver::watchEnds(const std::vector<int32_t>& ends)
+{
+	if (searchedBoxes.low.empty()) searchedBoxes.make(store, searched);
+	for (int32_t i : ends)
+		watchToo(i);
+	std::vector<std::tuple<size_t, bool, int32_t>> seen; // one for all that are alike
+	for (int32_t i : ends) {
+		const bool                               debris = linkCount(store.flags[size_t(i)]) < 3;
+		const std::tuple<size_t, bool, int32_t> kind { nearCells.cells.cellOf(searched.at(size_t(i))), debris, debris ? 0 : store.group[size_t(i)] };
+		if (std::find(seen.begin(), seen.end(), kind) != seen.end()) continue;
+		seen.push_back(kind);
+		watchForeign(i);
+	}
+}
+
+/// What follows from the lists of places and of the watched.
+void Solver::readyWatch()
+{
+	watchPlace.resize(watch.size());
+	isWatched.assign(store.size(), 0);
+	for (size_t q = 0; q < watch.size(); q++)
+		watchPlace.set(q, searched.at(size_t(watch[q]))), isWatched[size_t(watch[q])] = 1;
+	nearCells.used.clear(), nearCells.of.clear(), searchedBoxes = {};
+}
+
 void Solver::searchIfNeeded()
 {
 	Timer  timer(timing, counters.nsSearch);
 	double reach = 1e300; // a pair that is not listed may come nearer by this much before it can touch
 	for (auto& sp : store.species)
 		reach = std::min(reach, options.skin * sp.d);
+	if (searched.size() != store.size()) searchDue = true;
 	// links break in batches, every fourth step: each batch needs a search, and a few steps do not matter to a process that takes hundreds
-	if (searchDue || mayTouch(reach) || (counters.steps % breakPeriod == 0 && breaking())) search();
+	std::vector<int32_t> ends;
+	if (counters.steps % breakPeriod == 0 && breaking()) {
+		Timer t(timing, counters.nsFracture);
+		ends = breakLinks();
+	}
+	if (ends.size() && !searchDue) watchEnds(ends);
+	if (searchDue || mayTouch(reach)) search();
+	else if (ends.size()) searchEnds(ends);
+}
+
+std::vector<int32_t> Solver::exposed() const
+{
+	std::vector<int32_t> who;
+	for (size_t i = 0; i < store.size(); i++)
+		if (store.id[i] >= 0 && (store.flags[i] & exposedBit)) who.push_back(int32_t(i));
+	return who;
 }
 
 void Solver::search()
 {
 	Store& S = store;
-	if (counters.steps % breakPeriod == 0) {
-		Timer t(timing, counters.nsFracture);
-		breakLinks();
-	}
 	if (counters.steps >= lastSort + 2000) sortInSpace();
 	for (int32_t i : contacts.rowOwner) // entries of owners that may have none any more
 		scratch.eachArray([&](auto& v, Presence) {
 			if (!v.empty()) v[i] = 0.;
 		});
-	std::vector<int32_t> exposed;
-	for (size_t i = 0; i < S.size(); i++)
-		if (S.id[i] >= 0 && (S.flags[i] & exposedBit)) exposed.push_back(int32_t(i));
-	searchContacts(S, exposed, contacts, contactsBefore, options.skin, threads());
-	if (contacts.size()) scratch.resize(S.size(), options.account);
+	searched = S.position;
+	const std::vector<int32_t> who = exposed();
+	searchContacts(S, searched, who, contacts, contactsBefore, options.skin, threads());
+	nearCells.cells = Cells(searched, nearCell * S.largestDiameter());
+	watch           = watched(S, searched, who, nearCells.cells);
+	readyWatch();
+	searchDue = false;
+	counters.searches++;
+	afterSearch();
+}
+
+// The list of contacts is always that of the places of the last search of all: pairs that were in range there, may touch by now and are not linked. The speeds
+// of all listed pairs limit the time step, so what is listed must not depend on how it was found.
+void Solver::searchEnds(const std::vector<int32_t>& ends)
+{
+	if (wholeLists) searchContacts(store, searched, exposed(), contacts, contactsBefore, options.skin, threads());
+	else addContacts(store, searched, searchedBoxes, ends, contacts, options.skin);
+	counters.localSearches++;
+	afterSearch();
+}
+
+void Solver::afterSearch()
+{
+	if (contacts.size()) scratch.resize(store.size(), options.account);
 	settleVolumes();
-	watch = watched(S, exposed, nearCell * S.largestDiameter());
-	searched.resize(watch.size());
-	for (size_t q = 0; q < watch.size(); q++)
-		searched.set(q, S.position.at(watch[q]));
-	nearCells.of.clear();
 	contactAdjacent.clear();
-	if (options.sleeping && awake.size() < S.blocks.size()) {
+	if (options.sleeping && awake.size() < store.blocks.size()) {
 		for (size_t c = 0; c < contacts.size(); c++) {
 			const int32_t a = contacts.owner[c] / blockSize, b = contacts.other[c] / blockSize;
 			if (a < b) contactAdjacent.push_back({ a, b });
@@ -157,7 +230,5 @@ void Solver::search()
 		contactAdjacent.erase(std::unique(contactAdjacent.begin(), contactAdjacent.end()), contactAdjacent.end());
 	}
 	topologyChanged = true;
-	searchDue       = false;
-	counters.searches++;
 }
 }

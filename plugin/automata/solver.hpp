@@ -67,7 +67,7 @@ struct Account {
 };
 
 struct Counters {
-	int64_t steps = 0, searches = 0, blockSteps = 0, brokenLinks = 0, clamped = 0, sorts = 0;
+	int64_t steps = 0, searches = 0, localSearches = 0, blockSteps = 0, brokenLinks = 0, clamped = 0, sorts = 0;
 	double  deepest = 1e300; ///< smallest r/d seen
 	double  nsDensity = 0, nsStress = 0, nsForce = 0, nsContact = 0, nsSearch = 0, nsIntegrate = 0, nsFracture = 0;
 };
@@ -143,6 +143,8 @@ public:
 	bool isTied(size_t t, int32_t id) const { return t < tied.size() && store.id[size_t(tied[t])] == id; }
 	/// The timers of counters run only when asked.
 	bool timing = false;
+	/// Tests: what breaks makes the whole list of contacts anew, not only what it adds; nothing else changes by a bit.
+	bool wholeLists = false;
 
 private:
 	void   makeBlocks(const std::vector<Automaton>& automata);
@@ -171,9 +173,16 @@ private:
 	void   classify();
 	void   sortInSpace();
 	void   searchIfNeeded();
-	void   makeNearCells();
+	void   placeInNearCells();
 	bool   mayTouch(double reach);
+	void   watchToo(int32_t i);
+	void   watchForeign(int32_t i);
+	void   watchEnds(const std::vector<int32_t>& ends);
+	void   readyWatch();
+	std::vector<int32_t> exposed() const;
 	void   search();
+	void   searchEnds(const std::vector<int32_t>& ends);
+	void   afterSearch();
 	void   wake();
 	void   wakeAround(size_t block);
 	template <class F> void eachBreaking(F&& f) const;
@@ -181,7 +190,7 @@ private:
 	double determinantNow(size_t i) const;
 	void   keepVolume(size_t i, double J);
 	void   scaleStresses(size_t i, double ratio);
-	void   breakLinks();
+	std::vector<int32_t> breakLinks();
 	void   settleVolumes();
 	void   filterVolumes();
 	void   volumeChanges(size_t block, double lasted);
@@ -235,13 +244,19 @@ private:
 	bool                     flows = false;     ///< some material yields
 	int64_t                  lastSort = 0;
 	std::vector<std::pair<int32_t, double>> unsettled; ///< lost its links in the present search, with the volume that contacts must take over
-	Vectors                                  searched;  ///< their positions at the last search
-	std::vector<int32_t>     watch; ///< whose displacements tell when contacts are searched anew, see watched()
+	Vectors              searched; ///< where all automata were at the last search of all: the list of contacts is that of these places, see searchEnds()
+	std::vector<int32_t> watch;    ///< whose displacements since then tell when contacts are searched anew, see watched(); in any order
+	// what follows from these two
+	Vectors           watchPlace;   ///< those of the watched
+	std::vector<char> isWatched;    ///< of all automata
+	BlockBoxes        searchedBoxes; ///< made when they are needed
 	struct {
-		std::vector<int32_t>                     of;    ///< cell of each watched automaton; made when they are needed
+		Cells                                    cells; ///< of all automata
+		std::vector<int32_t>                     used;  ///< number of each cell that holds someone watched, else -1; made when they are needed
+		std::vector<int32_t>                     of;    ///< cell of each watched automaton
 		std::vector<std::pair<int32_t, int32_t>> pairs; ///< of cells next to each other, once
 		int32_t                                  count = 0;
-	} nearCells; ///< where they were at the last search; follows from `searched`
+	} nearCells; ///< where they were at the last search
 	Contacts                 contactsBefore; ///< memory for the next search
 	std::vector<int32_t>     adjacentBegin, adjacent; ///< blocks next to a block by links
 	std::vector<std::pair<int32_t, int32_t>> contactAdjacent;

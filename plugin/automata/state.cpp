@@ -178,11 +178,12 @@ void Solver::load(const std::string& bytes)
 	fresh.archive(r);
 	if (r.at != bytes.size()) damaged("bytes are left over");
 	fresh.checkState();
-	fresh.timing = timing;
+	fresh.timing = timing, fresh.wholeLists = wholeLists;
 	fresh.works.assign(fresh.store.blocks.size(), {});
 	fresh.contacts.sizeScratch();
 	contactReciprocals(fresh.store, fresh.contacts);
 	fresh.contactAdjacent.clear();
+	if (!fresh.searched.empty()) fresh.nearCells.cells = Cells(fresh.searched, nearCell * fresh.store.largestDiameter()), fresh.readyWatch();
 	fresh.store.packAll();
 	*this = std::move(fresh);
 	for (size_t c = 0; c < contacts.size(); c++) {

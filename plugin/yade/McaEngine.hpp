@@ -109,8 +109,9 @@ public:
 		.def("energies", &McaEngine::energies, "Energies [J/m] now; dissipations since the start when the account is kept. 'bookedError': kinetic "
 		    "energy minus all work booked (round-off); 'halfStep': what 'kinetic', 'external' and 'viscous' change in the half step between the "
 		    "stresses and the velocities; 'total': independent sum at the time of the stresses.")
-		.def("counters", &McaEngine::countersNow, "Work done so far: steps, searches, sorts, blockSteps (blocks of 64 computed), blocks, "
-		    "brokenLinks, clamped (equation of state beyond its clamp), deepest (smallest distance / rest distance), contacts, awake.")
+		.def("counters", &McaEngine::countersNow, "Work done so far: steps, searches (for contacts of all), localSearches (where links broke), sorts, "
+		    "blockSteps (blocks of 64 computed), blocks, brokenLinks, clamped (equation of state beyond its clamp), "
+		    "deepest (smallest distance / rest distance), contacts, awake.")
 		.def("links", &McaEngine::linkList, "Pairs of body ids whose link holds, list of (id1, id2).")
 		.def("setViscous", &McaEngine::setViscous, (py::arg("ids"), py::arg("normal")), "Viscous (transmitting) boundary of Lysmer and Kuhlemeyer "
 		    "(1969) on these bodies: traction -rho cP v_n n - rho cS v_t on their outer width; normal is (1,0), (-1,0), (0,1) or (0,-1).")

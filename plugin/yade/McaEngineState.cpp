@@ -212,8 +212,8 @@ py::dict McaEngine::countersNow()
 	});
 	py::dict d;
 	if (!n.any) return d;
-	d["steps"] = n.c.steps, d["searches"] = n.c.searches, d["sorts"] = n.c.sorts, d["blockSteps"] = n.c.blockSteps, d["blocks"] = n.blocks,
-	d["awake"]       = n.awake;
+	d["steps"] = n.c.steps, d["searches"] = n.c.searches, d["localSearches"] = n.c.localSearches, d["sorts"] = n.c.sorts;
+	d["blockSteps"] = n.c.blockSteps, d["blocks"] = n.blocks, d["awake"] = n.awake;
 	d["brokenLinks"] = n.c.brokenLinks, d["clamped"] = n.c.clamped, d["deepest"] = std::min(n.c.deepest, 1.), d["contacts"] = n.contacts;
 	return d;
 }

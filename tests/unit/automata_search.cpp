@@ -23,6 +23,35 @@ std::vector<Automaton> cloud(unsigned seed, int fragments, double speed)
 	append(list, away);
 	return list;
 }
+/// The list of contacts, and all else.
+std::vector<double> listed(const Solver& s)
+{
+	const Contacts&     C = s.contacts;
+	std::vector<double> v = everything(s);
+	for (auto list : { &C.owner, &C.other, &C.reverse, &C.rowOwner, &C.rowBegin }) v.insert(v.end(), list->begin(), list->end());
+	for (auto list : { &C.d, &C.twoG, &C.friction, &C.viscLinear, &C.viscQuadratic, &C.arm, &C.perTwoG, &C.perOwnG })
+		v.insert(v.end(), list->begin(), list->end());
+	v.push_back(double(s.counters.searches)), v.push_back(double(s.counters.localSearches)), v.push_back(s.criticalStep());
+	return v;
+}
+/// Pairs closer than their rest distance that may touch, are not linked and not listed.
+int overlooked(const Solver& s)
+{
+	const Store& S = s.store;
+	std::vector<std::pair<int32_t, int32_t>> known;
+	for (size_t c = 0; c < s.contacts.size(); c++) known.push_back({ s.contacts.owner[c], s.contacts.other[c] });
+	for (size_t i = 0; i < S.size(); i++)
+		for (int k = 0; k < nLinks; k++)
+			if (holds(S.flags[i], k)) known.push_back({ int32_t(i), S.neighbour[linkSlot(i, k)] });
+	std::sort(known.begin(), known.end());
+	int missing = 0;
+	for (int32_t i = 0; i < int32_t(S.size()); i++)
+		for (int32_t j = 0; j < int32_t(S.size()); j++)
+			if (i != j && S.id[i] >= 0 && S.id[j] >= 0 && S.distance2(i, j) < sqr(S.restDistance(i, j))
+			    && mayTouch(S.flags[i], S.flags[j], S.group[i] == S.group[j]))
+				missing += !std::binary_search(known.begin(), known.end(), std::pair<int32_t, int32_t>(i, j));
+	return missing;
+}
 Solver of(const std::vector<Automaton>& list, double skin)
 {
 	Options o;
@@ -118,4 +147,31 @@ TEST(AutomataSearch, CellsHoldWhoIsInThem)
 	far[0] = 1.5;
 	EXPECT_TRUE(grid.away(far));
 	EXPECT_FALSE(grid.away(Vec<double> {}));
+}
+
+// What breaks adds its own pairs to the list: the same list and the same motion, bit by bit, as when all rows are made anew, also from a saved state.
+TEST(AutomataSearch, BreaksAddWhatAWholeListWouldHold)
+{
+	for (int scene = 0; scene < 4; scene++) {
+		Options o;
+		o.account = scene == 1, o.sleeping = scene != 2;
+		if (scene == 3) o.volumeRule = VolumeRule::inversePower;
+		Solver local, whole, loaded;
+		for (Solver* s : { &local, &whole }) impact(*s, 900. + 300. * scene, YieldKind::linearHardening, o, 0.15, 7 + unsigned(scene));
+		whole.wholeLists = true;
+		double dt = 0;
+		for (int k = 0; k < 600; k++) {
+			if (k == 300) loaded.load(local.save()), loaded.wholeLists = scene == 1;
+			for (Solver* s : { &local, &whole, &loaded })
+				if (s != &loaded || k >= 300) s->computeForces();
+			if (k % 40 == 0) { EXPECT_EQ(overlooked(local), 0) << scene << ' ' << k; }
+			ASSERT_TRUE(sameBits(listed(local), listed(whole))) << scene << ' ' << k;
+			if (k >= 300) { ASSERT_TRUE(sameBits(listed(local), listed(loaded))) << scene << ' ' << k; }
+			dt = dt > 0 ? std::min(0.4 * local.criticalStep(), 1.1 * dt) : 0.4 * local.criticalStep();
+			for (Solver* s : { &local, &whole, &loaded })
+				if (s != &loaded || k >= 300) s->integrate(dt);
+		}
+		EXPECT_GT(local.counters.localSearches, 20) << scene;
+		EXPECT_GT(local.counters.brokenLinks, 100) << scene;
+	}
 }
