@@ -23,28 +23,46 @@ class OutlineError(ValueError):
 
 
 def ringArea(ring):
-	"""Signed area of a closed ring (n, 2), positive when it runs counter-clockwise [m2]."""
-	x, y = ring[:, 0], ring[:, 1]
-	return 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+	"""Signed area of a closed ring (n, 2), or of each of several (m, n, 2), positive when it runs counter-clockwise [m2]."""
+	x, y = ring[..., 0], ring[..., 1]
+	return 0.5 * np.sum(x * np.roll(y, -1, axis=-1) - np.roll(x, -1, axis=-1) * y, axis=-1)
 
 
-def clipByConvex(ring, cell):
-	"""Sutherland & Hodgman (1974): the part of `ring` (n, 2) inside the convex counter-clockwise `cell` (k, 2), as one ring.
+def _cutOff(rings, a, b):
+	"""The parts of `rings` (m, n, 2) to the left of the line through their a and b, both (m, 2): (which of them, rings) for each number of corners that comes out."""
+	ax, ay, bx, by = (v[:, None] for v in (*a.T, *b.T))
+	side = (bx - ax) * (rings[..., 1] - ay) - (by - ay) * (rings[..., 0] - ax)
+	nextRing, nextSide = np.roll(rings, -1, axis=1), np.roll(side, -1, axis=1)
+	keep = side >= 0
+	crosses = keep != (nextSide >= 0)
+	t = np.divide(side, side - nextSide, out=np.zeros_like(side), where=crosses)
+	cut = rings + t[..., None] * (nextRing - rings)
+	both, stays = np.stack((rings, cut), axis=2).reshape(len(rings), -1, 2), np.stack((keep, crosses), axis=2).reshape(len(rings), -1)
+	count = stays.sum(axis=1)
+	for n in np.unique(count[count > 0]):
+		some = np.flatnonzero(count == n)
+		yield some, both[some][stays[some]].reshape(len(some), n, 2)
 
-	A ring that is not convex may come out with edges run through twice; they enclose nothing, so the signed area is exact.
+
+def clippedAreas(ring, cells):
+	"""Signed areas (M,) [m2] of the parts of `ring` (n, 2) inside the convex counter-clockwise `cells` (M, k, 2), by Sutherland & Hodgman (1974).
+
+	A ring that is not convex may come out with edges run through twice; they enclose nothing, so the signed areas are exact. Cells whose part has as many
+	corners are clipped together.
 	"""
-	for a, b in zip(cell, np.roll(cell, -1, axis=0)):
-		if len(ring) == 0:
-			return ring
-		side = (b[0] - a[0]) * (ring[:, 1] - a[1]) - (b[1] - a[1]) * (ring[:, 0] - a[0])
-		nextRing, nextSide = np.roll(ring, -1, axis=0), np.roll(side, -1)
-		keep = side >= 0
-		crosses = keep != (nextSide >= 0)
-		t = np.divide(side, side - nextSide, out=np.zeros_like(side), where=crosses)
-		cut = ring + t[:, None] * (nextRing - ring)
-		both = np.stack((ring, cut), axis=1).reshape(-1, 2)
-		ring = both[np.stack((keep, crosses), axis=1).ravel()]
-	return ring
+	areas, most = np.zeros(len(cells)), max(1, 200000 // len(ring))
+	for first in range(0, len(cells), most):
+		number = np.arange(first, min(first + most, len(cells)))
+		groups = [(number, np.broadcast_to(ring, (len(number), *ring.shape)))]
+		for e in range(cells.shape[1]):
+			found = {}
+			for at, rings in groups:
+				for some, parts in _cutOff(rings, cells[at, e], cells[at, (e + 1) % cells.shape[1]]):
+					found.setdefault(parts.shape[1], []).append((at[some], parts))
+			groups = [tuple(map(np.concatenate, zip(*g))) for g in found.values()]
+		for at, rings in groups:
+			areas[at] = ringArea(rings)
+	return areas
 
 
 class Polygon:
@@ -63,12 +81,12 @@ class Polygon:
 			r = r[np.any(r != np.roll(r, 1, axis=0), axis=1)]
 			if abs(r).max(initial=0) > 1e8 * np.ptp(r, axis=0).max(initial=0):
 				raise OutlineError('ring %d of the outline is too far out: its center must be within 1e8 of its sizes from (0, 0), or its points lose their digits' % k)
-			a = ringArea(r) if len(r) > 2 else 0.
+			a = float(ringArea(r)) if len(r) > 2 else 0.
 			if abs(a) <= 1e-14 * np.ptp(r, axis=0).max()**2:
 				raise OutlineError('ring %d of the polygon encloses no area' % k)
 			rings.append(r if (a > 0) == (k == 0) else r[::-1])  # outline counter-clockwise, holes clockwise
 		self.rings = rings
-		self.area = sum(ringArea(r) for r in rings)
+		self.area = float(sum(ringArea(r) for r in rings))
 		if self.area <= 0:
 			raise OutlineError('the holes of the polygon are larger than the polygon')
 
@@ -102,7 +120,7 @@ class Polygon:
 
 	def overlap(self, cells):
 		cells = array('cells', cells, OutlineError, (None, None, 2), empty=True)
-		return np.array([sum(ringArea(c) for c in (clipByConvex(r, cell) for r in self.rings) if len(c)) for cell in cells]).reshape(len(cells))
+		return sum(clippedAreas(r, cells) for r in self.rings)
 
 
 class Rectangle(Polygon):

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from yade_mca import packings
-from yade_mca.outlines import OutlineError, Polygon, Predicate, Rectangle, clipByConvex, disc, ringArea
+from yade_mca.outlines import OutlineError, Polygon, Predicate, Rectangle, clippedAreas, disc
 from yade_mca.packings import PackingError, cellGeometry, hexagonal
 
 
@@ -135,7 +135,7 @@ def test_predicate_by_sampling_agrees_with_the_polygon():
 def test_clipping_a_polygon_that_is_not_convex():
 	comb = np.array([(0, 0), (10, 0), (10, 5), (8, 5), (8, 1), (6, 1), (6, 5), (4, 5), (4, 1), (2, 1), (2, 5), (0, 5)], float)
 	square = np.array([(-1, 2), (11, 2), (11, 4), (-1, 4)], float)
-	assert ringArea(clipByConvex(comb, square)) == pytest.approx(3 * 2 * 2)
+	assert clippedAreas(comb, square[None]) == pytest.approx(3 * 2 * 2)
 
 
 @pytest.mark.parametrize('name, word', [('square', 'gear'), ('cube', 'gear'), ('sc', 'gear'), ('fcc', 'space'), ('hcp', 'space'), ('random', 'unknown')])
