@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Numbers of penetration runs: cases of the report, the text on the screen, and what they are compared with."""
 import csv
+import functools
 import math
 from pathlib import Path
 
@@ -34,6 +35,11 @@ def experiment():
 
 def tate(thickness, speed=1520., length=100., obliquity=0.):
 	"""Alekseevskii-Tate losses of the rod at a plate of `thickness` [mm], along its flight at `obliquity` [degrees]; see exact.tatePlate."""
+	return dict(_tate(thickness, speed, length, obliquity))
+
+
+@functools.lru_cache  # a run asks for it several times
+def _tate(thickness, speed, length, obliquity):
 	from ...exact import tatePlate
 	return tatePlate(1e-3 * length, 1e-3 * thickness / math.cos(math.radians(obliquity)), speed, **TATE)
 
