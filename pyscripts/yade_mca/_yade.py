@@ -29,8 +29,8 @@ pace = 0.  # seconds per step of the last steps()
 def steps(n):
 	"""n steps of the scene. True when all were made; False when someone has paused it. Raises what an engine raised.
 
-	O.run(n, True) looks only every 40 ms whether the run has ended; this looks every half millisecond, from when most of the steps can have been made: each look takes a
-	processor from the solver for a moment.
+	O.run(n, True) looks only every 40 ms whether the run has ended; this looks every half millisecond, from when most of the steps can have been made:
+	each look takes a processor from the solver for a moment.
 	"""
 	global pace
 	o, start = scene(), time.perf_counter()

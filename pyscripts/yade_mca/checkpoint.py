@@ -20,7 +20,7 @@ import numpy as np
 from ._yade import scene
 from .tasks.report import jsonable, writeAtomically
 
-__all__ = ['CheckpointError', 'peek', 'read', 'removeLeftovers', 'write']
+__all__ = ['CheckpointError', 'pack', 'peek', 'read', 'removeLeftovers', 'store', 'write']
 
 MAGIC = b'yade-mca checkpoint 1\n'
 
@@ -39,11 +39,21 @@ def write(path, facts, arrays):
 
 	The new file replaces an older one only when it is complete on the disk; raises OSError (e.g. disk full) otherwise, and the older one stays.
 	"""
+	store(path, *pack(facts, arrays))
+
+
+def pack(facts, arrays):
+	"""(head, parts) of what write() saves, for store(), which may be called in another process."""
 	packed = io.BytesIO()
 	np.savez(packed, **arrays)
 	parts = [packed.getvalue(), scene().sceneToString()]
-	head = dict(version=_version(), lengths=[len(p) for p in parts], sha256=[hashlib.sha256(p).hexdigest() for p in parts], facts=jsonable(facts))
-	text = json.dumps(head).encode() + b'\n'
+	return dict(version=_version(), lengths=[len(p) for p in parts], facts=jsonable(facts)), parts
+
+
+def store(path, head, parts):
+	"""Writes what pack() gave, as write() does. Needs no YADE."""
+	head = dict(head, sha256=[hashlib.sha256(p).hexdigest() for p in parts])
+	text = json.dumps({k: head[k] for k in ('version', 'lengths', 'sha256', 'facts')}).encode() + b'\n'
 	writeAtomically(path, b''.join((MAGIC, hashlib.sha256(text).hexdigest().encode() + b'\n', text, *parts)))
 	folder = os.open(os.path.dirname(os.path.abspath(path)), os.O_RDONLY)
 	try:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-__all__ = ['Frames', 'Painter', 'writeGif']
+__all__ = ['Frames', 'Painter', 'frameNumber', 'writeGif']
 
 WIDTH = 760  #: of a frame [pixels]
 COUNT = 80  #: most frames of one run; beyond, every second one goes
@@ -186,6 +186,11 @@ def writeGif(path, images, largest=LARGEST):
 	return str(path)
 
 
+def frameNumber(nanoseconds, interval):
+	"""In which interval [s] a time lies."""
+	return int((1e-9 * nanoseconds + 1e-12) / interval)
+
+
 class Frames:
 	"""The frames of one run in a folder, named by their time in ns; which ones there are depends on the times of the samples alone."""
 
@@ -207,16 +212,16 @@ class Frames:
 
 	def number(self, nanoseconds):
 		"""In which interval a time lies."""
-		return int((1e-9 * nanoseconds + 1e-12) / self.interval)
+		return frameNumber(nanoseconds, self.interval)
 
-	def update(self, run):
-		"""Paints a frame when one is due. Raises OSError."""
-		time = round(1e9 * run.time)
+	def update(self, still):
+		"""Paints a frame of an impact_output.Still when one is due. Raises OSError."""
+		time = round(1e9 * still.time)
 		if self.number(time) <= self.last:
 			return
 		self.last = self.number(time)
 		path = self.folder / ('frame_%07d.png' % time)
-		image = paint(self.painter, run)
+		image = paint(self.painter, still)
 		part = path.with_name('.' + path.name)
 		try:  # renamed when whole, but not flushed to the disk: it is only a picture
 			image.save(part, 'PNG', compress_level=3)
@@ -250,16 +255,9 @@ class Frames:
 		return found
 
 
-def paint(painter, run):
-	"""The frame of a run of impact.Impact now."""
-	s = run.scene
-	f = s.automata.fields(['ids', 'x', 'y', 'diameter', 'plasticStrain'])
-	rod = np.isin(f['ids'], s.ids['rod'])
-	positions, diameter, strain = np.stack((f['x'], f['y']), axis=1), f['diameter'], f['plasticStrain']
-	bodies = [(positions[some], diameter[some], shade(strain[some], first)) for some, first in ((~rod, 1 + SHADES), (rod, 1))]
-	view = lambda block, name: np.array(s.grid.view(block, name))
-	grids = [(np.stack((view(k, 'x'), view(k, 'y')), axis=-1), shade(view(k, 'plasticStrain'), 1 + SHADES)) for k in s.blocks.values()]
-	text = '%5.1f µs' % (1e6 * run.time)
-	if run.record['time']:
-		text += '     rod, tail %4.0f m/s, mean %4.0f m/s' % (run.last['tailVelocity'], run.last['allVelocity'])
-	return painter.frame(bodies, grids, text)
+def paint(painter, still):
+	"""The frame of an impact_output.Still."""
+	rod, strain = still.fields['rod'] > 0, still.fields['plasticStrain']
+	bodies = [(still.positions[some], 2 * still.radius[some], shade(strain[some], first)) for some, first in ((~rod, 1 + SHADES), (rod, 1))]
+	grids = [(nodes, shade(cells['plasticStrain'], 1 + SHADES)) for nodes, cells, _ in still.grids.values()]
+	return painter.frame(bodies, grids, still.text)

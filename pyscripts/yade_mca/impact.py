@@ -178,12 +178,16 @@ class Impact:
 
 	def save(self, path, extra=None):
 		"""Writes a checkpoint from which load() goes on identically. `extra`: dict of the caller. Raises OSError when it cannot; an older file stays."""
+		checkpoint.store(path, *self.packed(extra))
+
+	def packed(self, extra=None):
+		"""What save() writes, for checkpoint.store()."""
 		s = self.scene
 		facts = dict(scene=dict(facts=s.facts, blocks=s.blocks), run=dict(until=self.until, longest=self.longest, window=self.window, tolerance=self.tolerance, period=self.period),
 		             extra=extra or {})
 		arrays = {'record ' + k: v for k, v in self.arrays().items()}
 		arrays.update({'ids ' + k: v for k, v in s.ids.items()})
-		checkpoint.write(path, facts, arrays)
+		return checkpoint.pack(facts, arrays)
 
 	@classmethod
 	def load(cls, path, until=None):

@@ -1,25 +1,42 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Files of a penetration run: pictures of the pattern, the history plot, the animation, ParaView files. Needs no more of YADE than the scene's arrays."""
+"""What the files of a penetration run are made of, read from the scene as plain arrays, and when they are due.
+
+They are drawn and written by impact_files, beside the run.
+"""
+import errno
 import time
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from . import plots, vtk_output
+from .beside import Beside
+from .frames import frameNumber
 from .tasks.attempts import Attempts
 
-__all__ = ['Output', 'historyPicture', 'patternPicture', 'writeParaview']
+__all__ = ['Output', 'Still', 'patternPicture', 'still', 'writeParaview']
 
-STRAIN = dict(label='plastic strain', unit='', vmin=0., vmax=1.5, cmap='inferno')
-PRESSURE = dict(label='pressure', unit='Pa', vmin=-6e9, vmax=6e9, cmap='RdBu_r')
+
+@dataclass
+class Still:
+	"""A moment of a run, all that pictures and files of it need."""
+	time: float  #: [s]
+	positions: np.ndarray  #: of all automata (N, 2) [m]
+	radius: np.ndarray  #: (N,) [m]
+	fields: dict  #: name with unit -> (N,) or (N, 2)
+	grids: dict  #: name of the block -> (nodes (rows, columns, 2) [m], cell fields, node fields)
+	rows: list  #: for each interface which automata are tied
+	facts: dict  #: of the scene
+	bounds: tuple  #: what all pictures of the run show (x0, y0, x1, y1) [m]
+	text: str = ''  #: above a frame of the animation
 
 
 def automataFields(s):
-	"""(positions (N, 2) [m], radius (N,) [m], fields) of all automata; names of the fields carry their units."""
+	"""(ids, positions (N, 2) [m], radius (N,) [m], fields) of all automata; names of the fields carry their units."""
 	f = s.automata.fields(['ids', 'x', 'y', 'vx', 'vy', 'diameter', 'pressure', 'equivalentStress', 'plasticStrain', 'temperature', 'links'])
 	fields = {'velocity [m/s]': np.stack((f['vx'], f['vy']), axis=1), 'pressure [Pa]': f['pressure'], 'equivalentStress [Pa]': f['equivalentStress'],
 	          'plasticStrain': f['plasticStrain'], 'temperature [K]': f['temperature'], 'links': f['links'], 'rod': np.isin(f['ids'], s.ids['rod']).astype(np.uint8)}
-	return np.stack((f['x'], f['y']), axis=1), 0.5 * f['diameter'], fields
+	return f['ids'], np.stack((f['x'], f['y']), axis=1), 0.5 * f['diameter'], fields
 
 
 def gridFields(s, block):
@@ -31,22 +48,6 @@ def gridFields(s, block):
 	return nodes, cells, {'velocity [m/s]': np.stack((v('vx'), v('vy')), axis=-1)}
 
 
-def writeParaview(s, folder, name, time):
-	"""Writes automata, grid blocks and interface; returns {part number: path} for a Collection."""
-	folder = Path(folder)
-	positions, radius, fields = automataFields(s)
-	files = {0: vtk_output.writeAutomata(folder / ('automata_%s.vtp' % name), positions, fields, radius, time)}
-	for k, (block, number) in enumerate(sorted(s.blocks.items())):
-		nodes, cells, velocities = gridFields(s, number)
-		files[1 + k] = vtk_output.writeGrid(folder / ('grid_%s_%s.vts' % (block, name)), nodes, cells, velocities, time)
-	for k, c in enumerate(s.couplers):
-		row = np.searchsorted(s.automata.ids, np.array(c.rowIds))
-		if len(row):
-			f = {'velocity [m/s]': fields['velocity [m/s]'][row], 'pressure [Pa]': fields['pressure [Pa]'][row]}
-			files[10 + k] = vtk_output.writeInterface(folder / ('interface_%d_%s.vtp' % (k, name)), positions[row], f, time)
-	return files
-
-
 def bounds(s):
 	"""What all pictures of a run show (x0, y0, x1, y1) [m]: the plate, the rod at the start and as much below the plate."""
 	f = s.facts
@@ -55,118 +56,113 @@ def bounds(s):
 	return (-half, -f['thickness'] - 0.85 * f['rodLength'], half, 1.02 * f['rodLength'])
 
 
+def still(s, time, text=''):
+	"""The scene as it stands, a Still; time [s]."""
+	ids, positions, radius, fields = automataFields(s)
+	grids, rows = {name: gridFields(s, k) for name, k in s.blocks.items()}, [np.searchsorted(ids, np.array(c.rowIds)) for c in s.couplers]
+	return Still(time, positions, radius, fields, grids, rows, s.facts, bounds(s), text)
+
+
+def writeParaview(s, folder, name, time):
+	"""Writes automata, grid blocks and interface; returns {part number: path} for a Collection."""
+	from . import impact_files
+	return impact_files.writeParaview(still(s, time), folder, name)
+
+
 def patternPicture(path, s, time, title=''):
 	"""Plastic strain and pressure side by side; the outline of the bodies at the start as a line, the mesh of the grid drawn."""
-	positions, radius, fields = automataFields(s)
-	grids = [gridFields(s, k)[:2] for k in s.blocks.values()]
-	x0, y0, x1, y1 = bounds(s)
-	near = (positions[:, 0] > x0 - 0.01) & (positions[:, 0] < x1 + 0.01) & (positions[:, 1] > y0 - 0.01) & (positions[:, 1] < y1 + 0.01)
-	plt = plots.plt
-	with plt.rc_context(plots.STYLE):
-		figure, axes = plt.subplots(1, 2, sharey=True, figsize=(8.4, 3.9 * (y1 - y0) / (x1 - x0) + 1.2), layout='constrained')
-		for ax, what, name in ((axes[0], STRAIN, 'plasticStrain'), (axes[1], PRESSURE, 'pressure [Pa]')):
-			factor, unit = plots.SCALES.get(what['unit'], (1., what['unit']))
-			style = dict(cmap=what['cmap'], vmin=factor * what['vmin'], vmax=factor * what['vmax'])
-			for nodes, cells in grids:
-				plots.drawGrid(ax, nodes, factor * cells[name], **style).set_edgecolor('0.55')
-			ax.grid(False)
-			drawn = plots.drawAutomata(ax, positions[near], radius[near], factor * fields[name][near], **style)
-			f = s.facts
-			for y in (0., -1e3 * f['thickness']):
-				ax.axhline(y, color='0.6', lw=0.5, ls=':', zorder=0)
-			ax.set(xlim=(1e3 * x0, 1e3 * x1), ylim=(1e3 * y0, 1e3 * y1), aspect='equal', xlabel='x [mm]')
-			figure.colorbar(drawn, ax=ax, label='%s [%s]' % (what['label'], unit) if unit else what['label'], location='bottom', shrink=0.8,
-			                aspect=30, pad=0.01, extend='max' if what['vmin'] == 0 else 'both')
-		axes[0].set_ylabel('y [mm]')
-		figure.suptitle(title or '%.1f µs' % (1e6 * time), fontsize=9)
-		return _saveFixed(figure, path)
-
-
-def _saveFixed(figure, path):
-	"""As plots.save, but all pictures of a series keep one size."""
-	import io
-	data = io.BytesIO()
-	figure.savefig(data, format='png')
-	plots.plt.close(figure)
-	plots.writeAtomically(str(path), data.getvalue())
-	return str(path)
-
-
-def historyPicture(path, run, title=''):
-	"""Velocities, losses and energies against time."""
-	r = run.arrays()
-	e0 = run.impactEnergy
-	panels = [
-	        ('velocity', 'm/s', {'tail': r['tailVelocity'], 'all rod material': r['allVelocity']}),
-	        ('loss', '', {'dl/l0 by mass': r['lengthLoss'], 'dl/l0 as length': r['lengthLossGeometric'], 'dU/U0 of the tail': r['velocityLossTail'], 'dU/U0 of all': r['velocityLossAll']}),
-	        ('energy', 'J/m', dict({'sum': r['total'], 'kinetic': r['kinetic'], 'plastic work': r['plastic'], 'stored': r['stored'], 'viscous': r['viscous'], 'friction': r['friction']},
-	                               **({'grid, internal': r['grid']} if run.scene.grid else {}))),
-	        ('sum / impact energy - 1', '%', {'independent sum': 100 * (r['total'] - r['total'][0]) / e0}),
-	]
-	mark = r['time'][r['clearance'] >= 0.5 * run.scene.facts['rodDiameter']][:1]
-	return plots.history(path, r['time'], panels, title, marks=mark)
+	from .impact_files import Pattern
+	pattern = Pattern()
+	try:
+		return pattern.write(path, still(s, time), title)
+	finally:
+		pattern.close()
 
 
 class Output:
-	"""Pictures at given times and at the end, frames of the animation and ParaView files at regular ones.
+	"""Pictures at given times and at the end, frames of the animation and ParaView files at regular ones, all made by a process beside this one (use as a context manager).
 
-	A file that cannot be written does not end the run: it is named on the standard error and in `attempt.failures` ({path: why}).
+	A file that cannot be written does not end the run, nor does the end of that process: it is named on the standard error and in `attempt.failures` ({path: why}).
 	"""
 
-	def __init__(self, folder, pictures=(0., 20e-6, 40e-6), every=5e-6, resumeAt=None, animation=True):
-		"""folder exists. pictures: times [s]; every: interval of the ParaView files [s]; resumeAt: time of the checkpoint of a run that goes on [s]; animation: False for none."""
-		self.folder, self.pictures, self.every, self.resumeAt = Path(folder), list(pictures), every, resumeAt
-		self.paraview = self.folder / 'paraview'
-		self.paraview.mkdir(exist_ok=True)
-		self.collection = vtk_output.Collection(self.folder / 'penetration.pvd', keep=resumeAt is not None)
+	def __init__(self, folder, pictures=(0., 20e-6, 40e-6), every=5e-6, animation=True):
+		"""folder exists. pictures: times [s]; every: interval of the ParaView files [s]; animation: False for none.
+
+		The other process gets ready while the scene is built.
+		"""
+		self.folder, self.pictures, self.every, self.animation = Path(folder), list(pictures), every, animation
+		self.beside = Beside('yade_mca.impact_files', 'Files', str(folder), environment=dict(OMP_NUM_THREADS='1'))
 		self.attempt = Attempts('penetration')
-		self.animation, self.frames = animation, None
-		self.seconds = {'animation': 0.}  #: processor time by kind of file, what the computation pays
-		self.next = 0
+		self.asked = []  # (path, future, kind) of what is being made
+		self.seconds = {'animation': 0.}  #: processor time by kind of file, of both processes
+		self.next, self.lastSeries, self.lastFrame = 0, None, -1
+		self.interval = None  # the shortest between frames [s]; there may be fewer, see Frames
+
+	def __enter__(self):
+		return self
+
+	def __exit__(self, kind, *error):
+		if kind is None: self.beside.close()
+		else: self.beside.stop()
+
+	def begin(self, run, resumeAt=None):
+		"""Before the first update(). resumeAt: time of the checkpoint of a run that goes on [s]."""
+		f = run.scene.facts
+		self.interval = f['rodLength'] / f['speed'] / 52  # some 55 in all: most runs end soon after the rod has flown its length
+		self.lastSeries, self.lastFrame = self.beside.call('begin', bounds(run.scene), self.interval, resumeAt, self.animation).result()
 		if resumeAt is not None:
-			for f in [*self.folder.glob('.*.png.*'), *self.folder.glob('.*.gif.*'), *self.folder.glob('.*.html.*'), *self.folder.glob('.*.pvd.*'), *self.folder.glob('.*.json.*'),
-			          *self.paraview.glob('.*.part')]:
-				f.unlink()  # what a killed process has left unfinished
-			self.collection.truncate(resumeAt * (1 + 1e-12) + 1e-18)
 			self.pictures = [t for t in self.pictures if t > resumeAt or not (self.folder / self.name(t)).exists()]
-			self.next = int(resumeAt / every) + 1
+			self.next = int(resumeAt / self.every) + 1
 
 	@staticmethod
 	def name(t):
 		return 'pattern_%02.0fus.png' % (1e6 * t)
 
 	def update(self, run, end=False):
-		"""To be called at the start and after each sample; writes what is due."""
-		if (run.time >= self.next * self.every or end) and not (self.collection.entries and self.collection.entries[-1][0] >= run.time):
-			self.attempt(self.collection.path, lambda: self.collection.add(run.time, writeParaview(run.scene, self.paraview, '%06d' % round(1e9 * run.time), run.time)))
-			self.next = int(run.time / self.every) + 1
-		due = [t for t in self.pictures if run.time >= t]
-		if due:
-			self._pattern(self.name(due[-1]), run)
-			self.pictures = [t for t in self.pictures if t > run.time]
-		if self.animation:
-			start = time.process_time()
-			self.attempt(self.folder / 'frames', self._frame, run)
+		"""To be called at the start and after each sample; asks for what is due. What was interrupted may be called again."""
+		start, due, number = time.process_time(), [t for t in self.pictures if run.time >= t], frameNumber(round(1e9 * run.time), self.interval)
+		series = (run.time >= self.next * self.every or end) and not (self.lastSeries is not None and self.lastSeries >= run.time)
+		frame = self.animation and number > self.lastFrame
+		now = self._still(run) if due or series or frame or end else None
+		if frame:
+			self._ask(self.folder / 'frames', 'frame', now, kind='animation')
+			self.lastFrame = number
 			self.seconds['animation'] += time.process_time() - start
+		if series:
+			self._ask(self.folder / 'penetration.pvd', 'series', now)
+			self.next, self.lastSeries = int(run.time / self.every) + 1, run.time
+		if due:
+			self._picture(self.name(due[-1]), 'patternPicture', now)
+			self.pictures = [t for t in self.pictures if t > run.time]
 		if end:
-			self._pattern('pattern_end.png', run)
-			self.attempt(self.folder / 'history.png', historyPicture, self.folder / 'history.png', run)
-			if self.frames and self.frames.files:
-				start = time.process_time()
-				self.attempt(self.folder / 'penetration.gif', self._gif)
-				self.seconds['animation'] += time.process_time() - start
+			self._picture('pattern_end.png', 'patternPicture', now)
+			self._picture('history.png', 'history', run.arrays(), run.scene.facts, run.impactEnergy)
+			if self.animation: self._picture('penetration.gif', 'gif', kind='animation')
+		self.look()
 
-	def _pattern(self, name, run):
-		self.attempt(self.folder / name, patternPicture, self.folder / name, run.scene, run.time)
+	def _still(self, run):
+		text = '%5.1f µs' % (1e6 * run.time)
+		if run.record['time']:
+			text += '     rod, tail %4.0f m/s, mean %4.0f m/s' % (run.last['tailVelocity'], run.last['allVelocity'])
+		return still(run.scene, run.time, text)
 
-	def _frame(self, run):
-		if self.frames is None:
-			from .frames import Frames
-			f = run.scene.facts
-			self.frames = Frames(self.folder / 'frames', bounds(run.scene), f['rodLength'] / f['speed'] / 52, self.resumeAt)  # some 55 in all: most runs end soon after the rod has flown its length
-		self.frames.update(run)
+	def _picture(self, name, method, *args, kind=None):
+		self._ask(self.folder / name, method, str(self.folder / name), *args, kind=kind)
 
-	def _gif(self):
-		from .frames import writeGif
-		images = self.frames.images()
-		if images: writeGif(self.folder / 'penetration.gif', images)
+	def _ask(self, path, method, *args, kind=None):
+		self.asked.append((path, self.beside.call(method, *args), kind))
+
+	def look(self, wait=False):
+		"""Takes in what has been made, or could not be; wait: until all has."""
+		while self.asked and (wait or self.asked[0][1].done()):
+			path, future, kind = self.asked.pop(0)
+			self.attempt(path, self._outcome, future, kind)
+
+	def _outcome(self, future, kind):
+		try:
+			seconds = future.result()
+		except OSError:
+			raise
+		except Exception as e:  # costs the file, not the run
+			raise OSError(errno.EIO, '%s: %s' % (type(e).__name__, e)) from e
+		if kind: self.seconds[kind] += seconds

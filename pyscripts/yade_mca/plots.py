@@ -13,12 +13,14 @@ import matplotlib
 matplotlib.use('Agg')
 import numpy as np
 from matplotlib import pyplot as plt
+from matplotlib.cm import ScalarMappable
 from matplotlib.collections import EllipseCollection, PolyCollection
+from matplotlib.colors import Normalize
 from matplotlib.ticker import NullFormatter
 
 from .tasks.report import writeAtomically
 
-__all__ = ['automataPicture', 'convergence', 'drawAutomata', 'drawGrid', 'drawPareto', 'gridQuads', 'history', 'pareto', 'paretoFront', 'save']
+__all__ = ['automataPicture', 'convergence', 'drawAutomata', 'drawGrid', 'drawPareto', 'gridQuads', 'history', 'pareto', 'paretoFront', 'save', 'saveFixed', 'scale']
 
 #: unit of the data -> (factor, unit shown)
 SCALES = {'Pa': (1e-9, 'GPa'), 'm': (1e3, 'mm'), 's': (1e6, 'µs'), 'J/kg': (1e-3, 'kJ/kg'), 'J/m': (1e-3, 'kJ/m')}
@@ -39,6 +41,19 @@ def save(figure, path):
 	plt.close(figure)
 	writeAtomically(str(path), data.getvalue())
 	return str(path)
+
+
+def saveFixed(figure, path):
+	"""As save(), but as a PNG of the figure's own size, which all pictures of a series share; the figure stays open."""
+	data = io.BytesIO()
+	figure.savefig(data, format='png')
+	writeAtomically(str(path), data.getvalue())
+	return str(path)
+
+
+def scale(cmap, vmin, vmax):
+	"""What a colour bar is made of, without the data."""
+	return ScalarMappable(Normalize(vmin, vmax), cmap)
 
 
 def gridQuads(nodes):

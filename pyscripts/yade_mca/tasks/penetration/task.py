@@ -3,10 +3,12 @@
 
 What is reported, and when, is defined in yade_mca/measure.py and yade_mca/impact.py.
 """
+import contextlib
 import math
 import os
 import sys
 import time
+from concurrent.futures import Future
 
 from .. import registry
 from ..cli import positive, writable
@@ -64,24 +66,42 @@ def title(args):
 class Keeper:
 	"""Writes the checkpoint now and then: at most every `interval` seconds, and so rarely that it takes little of the time."""
 
-	def __init__(self, path, interval, extra):
+	def __init__(self, path, interval, extra, beside=None):
+		"""beside: process that writes them, after all that it was asked for before; None, or when it is gone: this one does."""
 		from ... import checkpoint
-		self.path, self.interval, self.extra = path, interval, extra
-		self.next, self.failures, self.seconds = time.monotonic() + interval, 0, 0.
+		self.path, self.interval, self.extra, self.beside = path, interval, extra, beside
+		self.next, self.failures, self.open = time.monotonic() + interval, 0, []
 		checkpoint.removeLeftovers(path)
 
+	def _store(self, head, parts):
+		"""Future of the written file."""
+		if self.beside and not self.beside.ended: return self.beside.call('checkpoint', self.path, head, parts)
+		from ... import checkpoint
+		done = Future()
+		try:
+			done.set_result(checkpoint.store(self.path, head, parts))
+		except OSError as e:
+			done.set_exception(e)
+		return done
+
 	def update(self, run, end=False):
+		self.look()
 		start = time.monotonic()
 		if start < self.next and not end:
 			return
-		try:
-			run.save(self.path, self.extra)
-		except OSError as e:
-			self.failures += 1
-			print("\npenetration: no checkpoint at %.1f us: cannot write '%s': %s; the run goes on, the last one stays" % (1e6 * run.time, self.path, e.strerror or e), file=sys.stderr)
+		self.open.append((1e6 * run.time, self._store(*run.packed(self.extra))))
+		self.look()
 		spent = time.monotonic() - start
-		self.seconds += spent
 		self.next = time.monotonic() + max(self.interval, spent / SHARE)
+
+	def look(self, wait=False):
+		"""Says which have failed; wait: until all have been written or not."""
+		while self.open and (wait or self.open[0][1].done()):
+			at, future = self.open.pop(0)
+			e = future.exception()
+			if e:
+				self.failures += 1
+				print("\npenetration: no checkpoint at %.1f us: cannot write '%s': %s; the run goes on, the last one stays" % (at, self.path, getattr(e, 'strerror', None) or e), file=sys.stderr)
 
 
 def start(args):
@@ -100,46 +120,39 @@ def start(args):
 
 def expectedEnd(run):
 	"""A guess of the end of the run [s], for the remaining time shown; it grows when the run goes on beyond."""
-	from ...exact import tatePlate
 	f = run.scene.facts
 	if run.until is not None:
 		return run.until
-	tate = tatePlate(f['rodLength'], f['thickness'] / math.cos(f['obliquity']), f['speed'], **results.TATE)
-	return min(run.longest, 1.3 * tate['time'] + run.window + f['rodDiameter'] / f['speed'])
+	deep = f['thickness'] / math.cos(f['obliquity']) * (1 + math.sqrt(results.TATE['rhoT'] / results.TATE['rhoP'])) / f['speed']  # at the speed of two jets
+	return min(run.longest, 1.3 * deep + run.window + f['rodDiameter'] / f['speed'])
 
 
 def run(args, report, progress):
+	output = None
+	with contextlib.ExitStack() as stack:
+		if not args.no_files:  # first: it gets ready while YADE starts and the scene is built
+			from ...impact_output import Output
+			output = stack.enter_context(Output(args.out, animation=not args.no_animation))
+		_run(args, report, progress, output)
+
+
+def _keeper(args, output):
+	saved = {k: getattr(args, k) for k in (n.replace('-', '_') for n in options.SCENE)}
+	return Keeper(os.path.join(args.out, CHECKPOINT), args.checkpoint_interval, dict(options=saved), output.beside)
+
+
+def _run(args, report, progress, output):
 	from ... import _yade
 	_yade.scene().reset()
 	began = time.perf_counter()
 	run, resumed = start(args)
-	output = keeper = None
-	if not args.no_files:
-		from ...impact_output import Output
-		output = Output(args.out, resumeAt=resumed, animation=not args.no_animation)
-		saved = {k: getattr(args, k) for k in (n.replace('-', '_') for n in options.SCENE)}
-		keeper = Keeper(os.path.join(args.out, CHECKPOINT), args.checkpoint_interval, dict(options=saved))
+	keeper = None
+	if output:
+		output.begin(run, resumed)
+		keeper = _keeper(args, output)
 		if resumed is None:
 			output.update(run)
-	expected = max(expectedEnd(run), 1.01 * run.time)
-	already = resumed or 0.
-	with progress(1e6 * (expected - already), results.name(args), 'us') as bar:
-		while not run.finished:
-			try:
-				run.advance()
-			except (RuntimeError, KeyboardInterrupt):
-				if keeper:  # a refused step leaves the state before it
-					keeper.update(run, end=True)
-					print('penetration: the state at %.2f us is in %s' % (1e6 * run.time, keeper.path), file=sys.stderr)
-				raise
-			rate = (run.last['step'] - run.startStep) / run.stepSeconds
-			if run.time > expected and not run.finished:  # as much longer as the criterion looks back
-				expected = min(run.longest, run.time + run.window) if run.until is None else run.time
-				bar.grow(1e6 * (expected - already))
-			bar.update(1e6 * (min(run.time, expected) - already), stepsPerSecond=float(rate), energy=run.sane()['energySum'], energyBooked=run.sane()['energyBooked'])
-			if keeper:
-				output.update(run)
-				keeper.update(run)
+	_advance(run, args, progress, output, keeper, resumed or 0.)
 	wall = time.perf_counter() - began
 	results.add(report, run, args, wall)
 	print(results.text(run, args), flush=True)
@@ -147,13 +160,45 @@ def run(args, report, progress):
 		finish(run, args, report, output, keeper, began, wall)
 
 
+def _advance(run, args, progress, output, keeper, already):
+	"""Runs to the end."""
+	expected = max(expectedEnd(run), 1.01 * run.time)
+	with progress(1e6 * (expected - already), results.name(args), 'us') as bar:
+		while not run.finished:
+			try:
+				run.advance()
+				rate = (run.last['step'] - run.startStep) / run.stepSeconds
+				if run.time > expected and not run.finished:  # as much longer as the criterion looks back
+					expected = min(run.longest, run.time + run.window) if run.until is None else run.time
+					bar.grow(1e6 * (expected - already))
+				sane = run.sane()
+				bar.update(1e6 * (min(run.time, expected) - already), stepsPerSecond=float(rate), energy=sane['energySum'], energyBooked=sane['energyBooked'])
+				if keeper:
+					output.update(run)
+					keeper.update(run)
+			except (RuntimeError, KeyboardInterrupt):
+				if keeper: _keep(run, output, keeper)
+				raise
+
+
+def _keep(run, output, keeper):
+	"""The state of a run that cannot go on; a refused step leaves the state before it."""
+	if run.record['time'][-1:] == [run.time]: output.update(run)  # it may have been interrupted there
+	keeper.update(run, end=True)
+	output.look(wait=True)
+	keeper.look(wait=True)
+	print('penetration: the state at %.2f us is in %s' % (1e6 * run.time, keeper.path), file=sys.stderr)
+
+
 def finish(run, args, report, output, keeper, began, wall):
 	"""Writes what is written at the end, the numbers first. Files that cannot be written are named in one error at the end; everything else is there then."""
 	record, summary = report.extra['penetration'], os.path.join(args.out, 'summary.json')
+	output.update(run, end=True)
 	record['checkpointFailures'] = keeper.failures
 	output.attempt(summary, report.write, summary)
-	output.update(run, end=True)
 	keeper.update(run, end=True)
+	output.look(wait=True)
+	keeper.look(wait=True)
 	if not args.no_page:
 		from . import page
 		start, path = time.process_time(), os.path.join(args.out, PAGE)
