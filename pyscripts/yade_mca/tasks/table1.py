@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""`table1`: six plate thicknesses in both modes, each run a process of its own, beside the published table, the experiment and the Tate line."""
+"""`table1`: six plate thicknesses in both modes, runs at once in processes of their own, beside the published table, the experiment and the Tate line."""
 import concurrent.futures
+import contextlib
+import io
 import json
 import math
 import os
-import subprocess
-import sys
+import queue
 import time
 
-from . import environment, registry
+from .. import _yade
+from ..beside import Beside
+from . import cli, environment, registry
 from .penetration import options, report as results
 from .attempts import Attempts, inMemory
 from .cli import positive
@@ -36,27 +39,62 @@ def check(args):
 			options.checkScene(t, args.spacing, args)
 
 
-def child(words, threads):
-	"""Runs `penetration` in a process of its own; returns its JSON object. Raises RuntimeError with what it said when it failed."""
-	with inMemory('run.json') as path:
-		return _child(words, path, threads)
+class Runs:
+	"""Made in a process of its own: the task `penetration`, run after run, with YADE loaded once."""
+
+	def __init__(self):
+		_yade.scene()
+
+	def penetration(self, words):
+		"""Its JSON object. Raises RuntimeError with what it said when there is none."""
+		said = io.StringIO()
+		with inMemory('run.json') as path:
+			with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(said):
+				status = cli.main(['penetration', *words, '--no-files', '--json', path])
+			if not os.path.getsize(path):
+				raise RuntimeError('penetration %s: %s' % (' '.join(words), (said.getvalue().strip().splitlines() or ['status %d' % status])[-1]))
+			with open(path) as f:
+				return json.load(f)
 
 
-def _child(words, json_, threads):
-	command = [sys.executable, '-m', __package__, 'penetration', *words, '--no-files', '--threads', str(threads), '--json', json_]
-	done = subprocess.run(command, env=dict(os.environ, OMP_NUM_THREADS=str(threads)), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-	if not os.path.getsize(json_):
-		raise RuntimeError('%s: %s' % (' '.join(command[2:]), (done.stderr.strip().splitlines() or ['status %d' % done.returncode])[-1]))
-	with open(json_) as f:
-		return json.load(f)
+class Processes:
+	"""Processes with Runs of `threads` each, started when they are needed and kept for the next run. A context manager that ends them."""
+
+	def __init__(self, threads):
+		self.threads, self.all, self.idle = threads, [], queue.SimpleQueue()
+
+	def __enter__(self):
+		return self
+
+	def __exit__(self, kind, *error):
+		for p in self.all: p.stop() if kind else p.close()
+
+	def take(self):
+		try:
+			return self.idle.get_nowait()
+		except queue.Empty:
+			self.all.append(Beside(__name__, 'Runs', environment=dict(OMP_NUM_THREADS=str(self.threads))))
+			return self.all[-1]
+
+	def give(self, process):
+		if not process.ended: self.idle.put(process)
+
+
+def child(words, processes):
+	"""Runs `penetration` in one of the processes; returns its JSON object. Raises RuntimeError when it failed or the process died, which costs this run only."""
+	process = processes.take()
+	try:
+		return process.call('penetration', words).result()
+	finally:
+		processes.give(process)
 
 
 def runAll(jobs, progress, label, atOnce=None, threads=1):
 	"""Runs {key: words of the command line} and returns {key: JSON object}; the longest first. A failed run has the key 'error'."""
 	atOnce = atOnce or max(1, environment.cores() // threads)
 	done = {}
-	with concurrent.futures.ThreadPoolExecutor(atOnce) as pool, progress(len(jobs), label, 'run') as bar:
-		started = {pool.submit(child, words, threads): key for key, words in jobs.items()}
+	with concurrent.futures.ThreadPoolExecutor(atOnce) as pool, Processes(threads) as processes, progress(len(jobs), label, 'run') as bar:
+		started = {pool.submit(child, words, processes): key for key, words in jobs.items()}
 		try:
 			for future in concurrent.futures.as_completed(started):
 				done[started[future]] = _result(future)
