@@ -54,7 +54,8 @@ TEST(SpaceChange, UnlikeMaterialsInOneBodyKeepMomentumAndBookTheirEnergy)
 		EXPECT_LT(std::fabs(end.total() / start.kinetic - 1.), 0.02) << viscosity;
 		EXPECT_GT(end.plastic, 0.);
 		std::cout << "viscosity " << viscosity << ": independent sum " << end.total() / start.kinetic - 1. << ", booked "
-		          << end.bookedError() / start.kinetic << ", plastic " << end.plastic / start.kinetic << ", coupling " << end.coupling / start.kinetic << "\n";
+		          << end.bookedError() / start.kinetic << ", plastic " << end.plastic / start.kinetic
+		          << ", coupling " << end.coupling / start.kinetic << "\n";
 	}
 }
 
