@@ -67,8 +67,10 @@ template <mca::EosKind law> void McaLaw::volumeBy(Row& r, bool withContacts)
 			l.txx = push.xx, l.txy = push.xy, l.tyx = push.yx, l.tyy = push.yy;
 			const Real slope = mca::volumeSlope(c, F, directions, l.factor);
 			r.stiff          = mca::affineStiffness(c, J, slope, nearest2, triangles);
-			if (lastMove > 0)
-				l.viscous = l.factor > 0 ? mca::BulkViscosity(*r.material, r.d, 1. / lastMove).pressure(mca::dilation(J, Jo), slope) : 0.;
+			if (lastMove > 0) {
+				const mca::BulkViscosity viscosity(*r.material, r.d, 1. / lastMove);
+				l.viscous = l.factor > 0 ? viscosity.pressure(mca::dilation(J, Jo), slope, mca::tangent<law>(c.eos, J - 1.)) : 0.;
+			}
 			if (!withContacts) return;
 			const Real Jc = mca::contactRatio(contactSum), cell = mca::contactCell(r.d, l.cell, l.factor); // contacts have a volume of their own
 			l.pressureShare = mca::pressureShare<mca::ofContacts(rule.value)>(mca::pressure<law>(c.eos, Jc - 1.), Jc, cell * (1. / nLinks));

@@ -74,7 +74,7 @@ namespace {
 			const double            slope = volumeSlope(c, F, e, V.factor[l]);
 			stiffest    = max(stiffest, affineStiffness(c, J, slope, L.nearest2[l] * c.d2, false));
 			V.dTheta[l] = dilation(J, Jo), V.J[l] = J, V.P[l] = p.P;
-			const double q = V.factor[l] > 0. ? viscosity.pressure(V.dTheta[l], slope) : 0.;
+			const double q = V.factor[l] > 0. ? viscosity.pressure(V.dTheta[l], slope, tangent<law>(c.eos, J - 1.)) : 0.;
 			V.viscous[l]   = perMove > 0. ? q : V.viscous[l]; // forces once more without a move: as before
 			if (hot) V.heat[l] = p.e;
 			L.dyads.set(l, affinePush(c, F, V.factor[l]));

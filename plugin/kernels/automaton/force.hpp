@@ -38,17 +38,20 @@ MCA_INLINE PairViscosity ofLink(PairViscosity p, VolumeRule rule)
 /// (12a): viscous pressure of an automaton of the affine rule.
 struct BulkViscosity {
 	double linear, quadratic; ///< times the increment of the volume strain and its square: over one move [Pa]
+	double bulk;              ///< rho0 c0^2 [Pa]
 	/// perMove = 1/length of the last move [1/s]; zero: no viscosity
 	BulkViscosity(const Material& m, double d, double perMove)
 		: linear(m.viscosity.linear * m.eos.rho0 * m.eos.c0 * (d * perMove))
 		, quadratic(m.viscosity.quadratic * m.eos.rho0 * sqr(d * perMove))
+		, bulk(m.eos.bulkModulus())
 	{
 	}
 	/// slope: volumeSlope(); the length over which a volume is measured shrinks with it, and so the damping stays that of the perfect packing.
-	double pressure(double dilation, double slope) const
+	/// tangent: dP/d(-eps) now [Pa]; the linear part has the impedance of sound in what is compressed, since a strong shock is damped by its end, too.
+	double pressure(double dilation, double slope, double tangent) const
 	{
-		const double a = min(dilation, 0.), per = 1. / slope;
-		return fma(quadratic * per * a, a, -linear * std::sqrt(per) * a);
+		const double a = min(dilation, 0.);
+		return fma(quadratic / slope * a, a, -linear * std::sqrt(max(tangent, 0.) / (bulk * slope)) * a);
 	}
 };
 /// Its heat over a move, per volume at rest [J/m3].

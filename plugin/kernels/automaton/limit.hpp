@@ -16,12 +16,13 @@ inline double stableStep(double d, double cP, double cS, double zeta)
 	return cS > 0. ? min(sound, Lattice::turningStep * d / cS) : sound;
 }
 /// Damping ratio of the fastest sound wave [-]; cP with the tangent at the present state, approach = d |theta'| [m/s]. (12a) has 2 c2 as the
-/// slope of its quadratic part. Links damp by c1 at rest, and no more where the tangent has become stiffer.
+/// slope of its quadratic part, and in its linear part a speed of sound that is at most cP. Links damp by c1 at rest, and no more where the tangent has become
+/// stiffer.
 inline double dampingRatio(const Material& m, VolumeRule rule, double cP, double approach)
 {
 	const Viscosity& v = m.viscosity;
 	if (rule != VolumeRule::affine) return v.active() ? v.linear + v.quadratic * approach / cP : 0.;
-	return (Lattice::linkViscosity * v.linear * m.cP() + Lattice::volumeDamping * (v.linear * m.eos.c0 + 2. * v.quadratic * approach)) / cP;
+	return (Lattice::linkViscosity * v.linear * m.cP() + Lattice::volumeDamping * (v.linear * cP + 2. * v.quadratic * approach)) / cP;
 }
 /// Square of the frequency with which an automaton at an outline turns against its neighbours, over that inside: they move, too. Covers bodies of four
 /// triangles or more; one to three alone have up to 1.375, so that their limit is 5 % shorter.
