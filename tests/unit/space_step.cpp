@@ -129,6 +129,28 @@ TEST(SpaceBody, FreeVibrationKeepsItsEnergy)
 	          << end.total() / start.kinetic - 1. << "\n";
 }
 
+TEST(SpaceBody, RoughSurfacesAreStableNearTheLargestStep)
+{
+	std::mt19937 r(1);
+	for (double nu : { 0.3, 0.45 }) {
+		const Material m    = plain(3. * (1. - 2. * nu) / (2. * (1. + nu)));
+		auto           list = packing(1., 7., randomRotation(r), m, ellipsoid(5.1, 3.7, 2.6));
+		shake(list, 1e-5, 6);
+		Options o;
+		o.contacts = false;
+		Solver s;
+		s.build(list, { m }, o);
+		s.computeForces();
+		const double dt = 0.95 * s.criticalStep(), start = s.account().kinetic;
+		double       most = 0;
+		for (int k = 0; k < 4000; k++) {
+			s.computeForces(), s.integrate(dt);
+			if (k % 10 == 0) most = std::max(most, s.account().kinetic);
+		}
+		EXPECT_LT(most, 1.5 * start) << nu;
+	}
+}
+
 TEST(SpaceBody, TurnsRigidlyAboutAGeneralAxis)
 {
 	std::mt19937      r(13);
