@@ -6,8 +6,6 @@ Files runs in a process beside the run: there is no YADE here.
 import time
 from pathlib import Path
 
-import numpy as np
-
 from . import checkpoint, plots, vtk_output
 from .frames import Frames, frameNumber, writeGif
 

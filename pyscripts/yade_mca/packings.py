@@ -17,8 +17,8 @@ from ._arguments import array, number, oneOf, whole
 from ._fcc import Ball, Box, Cylinder, SpacePacking, make
 from .outlines import Polygon, Predicate, Rectangle, asOutline, disc
 
-__all__ = ['Packing', 'PackingError', 'CellGeometry', 'cellGeometry', 'hexagonal', 'create', 'addBodies', 'resetStates', 'Polygon', 'Predicate', 'Rectangle', 'disc']
-__all__ += ['fcc', 'SpacePacking', 'Box', 'Cylinder', 'Ball']
+__all__ = ['Packing', 'PackingError', 'CellGeometry', 'cellGeometry', 'hexagonal', 'create', 'addBodies', 'resetStates', 'Polygon', 'Predicate', 'Rectangle', 'disc', 'fcc', 'SpacePacking', 'Box',
+           'Cylinder', 'Ball']
 
 
 class PackingError(ValueError):
