@@ -15,9 +15,14 @@ struct Cells {
 	Vec<int>    count {};
 
 	Cells() = default;
-	/// Cells of at least `size` [m] around these points.
+	/// Cells of at least `size` [m] around these points; a single one where there are none.
 	Cells(const Vectors& points, double size)
 	{
+		if (points.empty() || !(size > 0)) {
+			inv = 1.;
+			for (int c = 0; c < dim; c++) count[c] = 1;
+			return;
+		}
 		for (int c = 0; c < dim; c++) {
 			low[c] = 1e300, high[c] = -1e300;
 			for (double x : points[c])

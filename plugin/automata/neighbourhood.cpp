@@ -143,7 +143,7 @@ void Solver::watchEnds(const std::vector<int32_t>& ends)
 		watchToo(i);
 	std::vector<std::tuple<size_t, bool, int32_t>> seen; // one for all that are alike
 	for (int32_t i : ends) {
-		const bool                               debris = linkCount(store.flags[size_t(i)]) < 3;
+		const bool                               debris = linkCount(store.flags[size_t(i)]) < Lattice::volumeLinks;
 		const std::tuple<size_t, bool, int32_t> kind { nearCells.cells.cellOf(searched.at(size_t(i))), debris, debris ? 0 : store.group[size_t(i)] };
 		if (std::find(seen.begin(), seen.end(), kind) != seen.end()) continue;
 		seen.push_back(kind);
