@@ -19,7 +19,7 @@ def wait(until, seconds=60):
 		time.sleep(0.02)
 try:
 	s = scenes.penetration(thickness=10e-3, spacing=2e-3, rodLength=20e-3, rodDiameter=8e-3, automataWidth=30e-3, plateWidth=50e-3)
-	O.run(60, True)
+	O.run(66, True)
 	picture = viewer.Picture(s.automata, 'pressure', s.grid)
 	v = qt.View()
 	v.screenSize = (600, 450)
