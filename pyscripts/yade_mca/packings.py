@@ -304,7 +304,7 @@ _REFUSED = {
                 'a square (cube, sc) arrangement has zero-energy modes: its discs turn like gear wheels without straining any pair, and the '
                 'pair law has no bending stiffness to resist',
         ('fcc', 'hcp'):
-                'fcc and hcp are arrangements of spheres in space; plane strain needs discs in one layer, each with 6 neighbours',
+                'fcc and hcp are arrangements of spheres in space (fcc() makes the former); plane strain needs discs in one layer, each with 6 neighbours',
 }
 
 
