@@ -211,10 +211,11 @@ void Solver::classify()
 		B.intact  = B.count == blockSize;
 		B.mixed   = false;
 		B.outline = false;
+		B.weighted = false;
 		for (int l = 0; l < blockSize; l++) {
 			const Flags f = S.flags[b * blockSize + l];
 			if (!isWhole(f)) B.intact = false;
-			B.outline |= trianglesIn(f) != 0;
+			B.outline |= trianglesIn(f) != 0, B.weighted |= (f & halfBits) != 0 || isMirrored(S, b * blockSize + size_t(l));
 			for (int k = 0; k < nLinks; k++) {
 				const int32_t j = S.neighbour[(b * nLinks + k) * blockSize + l];
 				if (!holds(f, k)) continue;
@@ -251,6 +252,7 @@ void Solver::build(const std::vector<Automaton>& automata, const std::vector<Mat
 	makeBlocks(automata);
 	makeLinks(old);
 	checkOutlines(automata, old);
+	makeMirrors(automata, old);
 	makeAdjacency();
 	classify();
 	Store& S = store;

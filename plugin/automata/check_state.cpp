@@ -92,7 +92,7 @@ namespace {
 			need(there ? S.id[i] >= 0 && size_t(S.id[i]) < place.size() && size_t(place[size_t(S.id[i])]) == i : S.id[i] == -1,
 			     "the number of an automaton");
 			need(there || S.flags[i] == 0, "padding");
-			need(!(S.flags[i] & ~(linkBits | halfBits | linkBits << hadShift | exposedBit | tiedBit | Flags(outlineBits))), "flags");
+			need(!(S.flags[i] & ~(linkBits | halfBits | linkBits << hadShift | exposedBit | tiedBit | edgeBits | Flags(outlineBits))), "flags");
 			known += there;
 		}
 		size_t listed = 0;

@@ -189,10 +189,31 @@ void contactReciprocals(const Store& S, Contacts& C)
 	}
 }
 
+namespace {
+	void findShared(const Store& S, const Contacts& C, ContactScratch& out)
+	{
+		out.shared.clear();
+		for (size_t c = 0; hasMirrors(S) && c < C.size(); c++)
+			if (const double w = pairShare(S, size_t(C.owner[c]), size_t(C.other[c])); w < 1.) out.shared.push_back({ int32_t(c), w });
+	}
+	/// These quantities of contacts within planes of symmetry times their share.
+	void share(const ContactScratch& in, std::initializer_list<double*> arrays)
+	{
+		for (const auto& s : in.shared)
+			for (double* v : arrays) v[s.contact] *= s.share;
+	}
+}
+
 double contactVolumes(const Store& S, Contacts& C, VolumeRule rule, ContactScratch& out, size_t& closest)
 {
 	withRule(rule, [&](auto r) { volumeTerms<r.value>(S, C); });
+	findShared(S, C, out);
+	share(out, { C.first.data() });
 	addRows<1>(C, { C.first.data() }, { out.sum.data() });
+	for (size_t r = 0; hasMirrors(S) && r < C.rows(); r++) { // who lies on a plane has the images of its contacts, too
+		const size_t i = size_t(C.rowOwner[r]);
+		out.sum[i] /= mirrorShare(S, i);
+	}
 	const long    n       = long(C.size());
 	const double* b       = C.second.data();
 	double        nearest = 1e300;
@@ -206,6 +227,7 @@ double contactVolumes(const Store& S, Contacts& C, VolumeRule rule, ContactScrat
 double contactTrial(const Store& S, Contacts& C, double dt, ContactScratch& out, bool account)
 {
 	const double speed2 = account ? trial<true>(S, C, dt) : trial<false>(S, C, dt);
+	share(out, { C.first.data(), C.press.data() });
 	if (!account) addRows<1>(C, { C.first.data() }, { out.square.data() });
 	else addRows<2>(C, { C.first.data(), C.press.data() }, { out.square.data(), out.old.data() });
 	return speed2;
@@ -214,6 +236,7 @@ double contactTrial(const Store& S, Contacts& C, double dt, ContactScratch& out,
 void contactFriction(const Store& S, Contacts& C, const ContactScratch& in, ContactWork* work)
 {
 	work ? friction<true>(S, C, in.scale.data()) : friction<false>(S, C, in.scale.data());
+	share(in, { C.first.data(), C.second.data(), C.third.data() });
 	for (size_t c = 0; work && c < C.size(); c++)
 		work->friction += C.first[c], work->coupling += C.second[c], work->plastic += C.third[c];
 }
@@ -230,6 +253,8 @@ void contactForces(Contacts& C, ContactScratch& out, bool account)
 	out.terms.resize(account ? n * (turns + 2 * dim) : n * turns);
 	double* t = out.terms.data();
 	account ? forces<true>(C, t) : forces<false>(C, t);
+	for (int c = 0; c < dim; c++) share(out, { C.between[c].data() });
+	for (int c = 0; c < (account ? turns + 2 * dim : turns); c++) share(out, { t + c * n });
 	std::array<const double*, turns + dim> from;
 	std::array<double*, turns + dim>       to;
 	for (int c = 0; c < turns; c++)

@@ -15,6 +15,11 @@ struct ContactScratch {
 #undef MCA_VECTOR
 #undef MCA_NUMBER
 	std::vector<double> terms; ///< per half-contact
+	struct Shared {
+		int32_t contact; ///< half
+		double  share;
+	};
+	std::vector<Shared> shared; ///< contacts within planes of symmetry, of which a share is on this side (S9); made anew in each step
 	void                resize(size_t n, bool account)
 	{
 		eachArray([&](auto& v, Presence p) {

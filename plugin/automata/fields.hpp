@@ -45,6 +45,7 @@
 	MCA_TURN(F, V, outsideTorque, whenUsed, "", hidden, "torque from outside [N]") \
 	V(damp, whenUsed, hidden, "viscous boundary rho c A [kg/(m s)]", MCA_COMPONENTS("dampX", "dampY", "dampZ")) \
 	F(weight, double, always, "weight", "share of the full cell [-]") \
+	MCA_MIRRORS(V) \
 	F(flags, Flags, always, "", "Flag bits") \
 	F(id, int32_t, always, "", "caller's number, -1: padding") \
 	F(group, int32_t, always, "", "link group")

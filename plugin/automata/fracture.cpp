@@ -12,7 +12,8 @@ double Solver::coldEnergyAt(size_t i, double J) const { return coldEnergy(store.
 /// Of the volume that contacts give it, if it has links: in the affine rule a volume of its own.
 double Solver::contactEnergyAt(size_t i, double Jc) const
 {
-	return coldEnergy(store.materialOf(i), contactCell(store.diameter[i], store.cell[i], 1.), Jc);
+	const double part = mirrorShare(store, i); // of what it is beyond planes of symmetry, too
+	return coldEnergy(store.materialOf(i), contactCell(store.diameter[i], store.cell[i] / part, 1.) * part, Jc);
 }
 
 /// f(automaton, link) for the pairs that fulfil a criterion, until it returns true.
@@ -92,14 +93,7 @@ void Solver::unlink(size_t i, int k)
 /// det F of the links that hold, at the present positions.
 double Solver::determinantNow(size_t i) const
 {
-	const Store&   S   = store;
-	Tensor<double> sum = {};
-	for (int k = 0; k < nLinks; k++)
-		if (holds(S.flags[i], k)) {
-			const int32_t j = S.neighbour[linkSlot(i, k)];
-			addMeasured(sum, S.flags[i], k, S.between(i, j));
-		}
-	return linkDeterminant(sum, Lattice::perVolume(S.diameter[i]));
+	return linkDeterminant(measured(store, i), Lattice::perVolume(store.diameter[i]));
 }
 
 // Affine rule: the remaining links measure the same homogeneous deformation; only the factor in front of det F is set anew, so that J goes on.

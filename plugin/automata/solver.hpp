@@ -3,22 +3,12 @@
 //   solver.build(...); loop { solver.computeForces(); solver.integrate(dt); }
 // Leapfrog: positions at whole steps, velocities at half steps. computeForces() gives the forces at the present positions.
 #pragma once
+#include "common.hpp"
 #include "contacts.hpp"
 #include <functional>
 #include <string>
 
 namespace mca::automata {
-
-struct Options {
-	VolumeRule volumeRule   = VolumeRule::affine;
-	double     linkFactor   = 1.2;  ///< automata closer than this times their rest distance are linked at build [-]
-	double     skin         = 0.4;  ///< contact search range beyond touching, in rest distances [-]
-	bool       sleeping     = true; ///< leave out blocks that nothing has reached
-	bool       account      = false; ///< keep the energy account
-	bool       contacts     = true; ///< search for contacts
-	double     volumeFilter = 0.1; ///< rate at which the shortest waves of volume fade in flowing material, times d/c0 [-]; affine rule
-	bool       fullLinks    = false; ///< keep full weight of links and cells at weighted rims (no half bonds)
-};
 
 constexpr double nearCell = 4; ///< size of the cells in which displacements since a search are compared [diameters]
 
@@ -32,6 +22,7 @@ struct Automaton {
 	int32_t material = 0, id = 0, group = 0;
 	Vec<bool>   free  = everyWay(); ///< per direction: moves as forces say
 	Turn<bool>  freeR = everyTurn();
+	Vec<bool>   mirror {}; ///< lies on a plane of symmetry with this normal, beyond which the body goes on as its image; in space only
 	int         triangles = 0; ///< of the packing that it shall stand for, to end at an outline (5g); 0: what its mass says
 	bool    isNew = false; ///< build with an old solver: another automaton than the one that had this number there
 };
@@ -45,32 +36,9 @@ struct LinkRecord {
 	LinkRecord() { std::fill(partner, partner + nLinks, -1); }
 };
 
-/// Energies [J/m]; independent ones from state functions and each dissipation's own increments, booked ones from forces and velocities.
-struct Account {
-	double kinetic = 0, volumetric = 0, deviatoric = 0;                    ///< now
-	double plastic = 0, viscous = 0, friction = 0, fracture = 0, coupling = 0, boundary = 0; ///< dissipated (coupling: exchanged) since build
-	double left     = 0;                                                   ///< stored in automata that were erased, less that of added ones
-	double external = 0;                                                   ///< work of external forces and driven automata
-	double bookedVolumetric = 0, bookedDeviatoric = 0, bookedViscous = 0;  ///< work of the internal forces
-	double centre = 0; ///< velocities stand half a step after stresses: kinetic energy, work from outside and of viscous forces then, minus now
-	double kineticStart = 0, heated = 0; ///< heated: dissipation that stands in the internal energy of Mie-Grueneisen materials
-	Vec<double> momentum {};                  ///< [N s/m]
-	Turn<double> angular {};                  ///< angular momentum about the origin [N s]
-	Vec<double> impulse {};                   ///< of external forces, driven and viscous boundaries [N s/m]
-	/// kinetic energy gained minus all work booked: round-off
-	double bookedError() const { return kinetic - kineticStart - bookedVolumetric - bookedDeviatoric - bookedViscous - external + boundary; }
-	/// independent sum at the time of the stresses
-	double total() const
-	{
-		return kinetic + volumetric + deviatoric + plastic + viscous + friction + fracture + coupling + boundary + left - external + centre;
-	}
-};
-
-struct Counters {
-	int64_t steps = 0, searches = 0, localSearches = 0, blockSteps = 0, brokenLinks = 0, clamped = 0, sorts = 0;
-	double  deepest = 1e300; ///< smallest r/d seen
-	double  nsDensity = 0, nsStress = 0, nsForce = 0, nsContact = 0, nsSearch = 0, nsIntegrate = 0, nsFracture = 0;
-};
+using Options  = AutomataOptions;
+using Counters = AutomataCounters;
+using Account  = AccountOf<Vec<double>, Turn<double>>;
 
 class MCA_API Solver {
 public:
@@ -157,6 +125,7 @@ private:
 	void   makeOutlines(const Solver* old);
 	void   checkOutlines(const std::vector<Automaton>& automata, const Solver* old) const;
 	void   halveLinks(size_t i, const std::function<bool(size_t)>& isFresh);
+	void   makeMirrors(const std::vector<Automaton>& automata, const Solver* old);
 	bool   closes(size_t i, int k) const;
 	Triangles trianglesAround(size_t i) const;
 	double slots(size_t i) const;

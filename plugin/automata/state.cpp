@@ -93,7 +93,10 @@ namespace {
 		void operator()(YieldKind& v) { f.choice(v, yieldKinds); }
 		void operator()(EosKind& v) { f.choice(v, eosKinds); }
 		void operator()(VolumeRule& v) { f.choice(v, 3); }
-		void operator()(Block& b) { MCA_EACH(b.species, b.count, b.intact, b.outline, b.mixed, b.contact, b.awake, b.moving, b.ringsAwake); }
+		void operator()(Block& b)
+		{
+			MCA_EACH(b.species, b.count, b.intact, b.outline, b.mixed, b.weighted, b.contact, b.awake, b.moving, b.ringsAwake);
+		}
 		void operator()(Species& s) { MCA_EACH(s.material, s.d); }
 		void operator()(Material& m) { eachConstant(m, *this); }
 		void operator()(BlockResult& r) { MCA_EACH(r.stiffest, r.closing, r.widest, r.nearest, r.criterion, r.clamped, r.bad); }

@@ -17,7 +17,7 @@ struct BlockBase {
 	const Planes<const double> positionOfAll = std::as_const(store.position).planes(), position = std::as_const(store.position).planes(base),
 				   velocity = std::as_const(store.velocity).planes(base);
 	const Planes<double> force          = store.force.planes(base);
-	const double *       cell = at(store.cell), *invN = at(store.invN), *strength = at(store.strength),
+	const double *       cell = at(store.cell), *invN = at(store.invN), *strength = at(store.strength), *weight = at(store.weight),
 		     *diameterOfAll = store.diameter.data(), *node = store.node.data(), *pushOfAll = store.push.data();
 	double *J = at(store.J), *dTheta = at(store.dTheta), *P = at(store.P), *mean = at(store.mean), *viscous = at(store.viscous), *h = at(store.h),
 	       *factor = at(store.factor), *rest = at(store.rest), *eqps = at(store.eqps), *temperature = at(store.temperature),
@@ -72,7 +72,8 @@ template <bool intact> MCA_INLINE Vec<v8> choose(m8 on, Vec<v8> a, Vec<v8> b)
 MCA_INLINE m8 holding(m8 flags, int k) { return ((flags >> k) & 1) != 0; }
 template <bool intact> MCA_INLINE v8 weights(m8 flags, int k)
 {
-	return choose<intact>(((flags >> (halfShift + k)) & 1) != 0, splat(intact ? 1. : 0.5), splat(1.));
+	const v8 half = dim == 3 && !intact ? ((flags >> (outlineShift + k)) & 1) != 0 ? splat(0.25) : splat(0.5) : splat(intact ? 1. : 0.5);
+	return choose<intact>(((flags >> (halfShift + k)) & 1) != 0, half, splat(1.));
 }
 
 /// f(b1, b2, ...) with these truth values as compile-time constants.

@@ -9,7 +9,7 @@ namespace {
 	bool curvatures(const Store& S, size_t b, double* takesPart, double* curvature)
 	{
 		const size_t   base = b * blockSize;
-		const double * J = S.J.data(), *eqps = S.eqps.data() + base, *factor = S.factor.data() + base;
+		const double * J = S.J.data(), *eqps = S.eqps.data() + base, *factor = S.factor.data() + base, *weight = S.weight.data() + base;
 		const Flags*   flags = S.flags.data() + base;
 		const int32_t* nb    = S.neighbour.data() + b * nLinks * blockSize;
 		double         any = 0;
@@ -24,7 +24,7 @@ namespace {
 		for (int k = 0; k < nLinks; k++)
 #pragma omp simd
 			for (int l = 0; l < blockSize; l++)
-				curvature[base + l] += takesPart[base + l] * (J[nb[k * blockSize + l]] - J[base + l]);
+				curvature[base + l] += takesPart[base + l] * exchangeWeight(flags[l], weight[l], k) * (J[nb[k * blockSize + l]] - J[base + l]);
 		return true;
 	}
 }
@@ -60,20 +60,21 @@ void Solver::volumeChanges(size_t b, double lasted)
 	const double   share = volumeExchange(options.volumeFilter, S.materialOf(B).eos.c0, lasted, S.species[B.species].d);
 	const int32_t* nb    = S.neighbour.data() + b * nLinks * blockSize;
 	double*        to    = change.data() + base;
-	const double * part = takesPart.data(), *curve = curvature.data();
+	const double * part = takesPart.data(), *curve = curvature.data(), *weight = S.weight.data() + base;
+	const Flags*   flags = S.flags.data() + base;
 	for (int l = 0; l < blockSize; l++)
 		to[l] = 0.;
 	for (int k = 0; k < nLinks; k++)
 		if (B.mixed)
 			for (int l = 0; l < blockSize; l++) {
 				const int32_t j = nb[k * blockSize + l];
-				if (S.speciesOf(j) == B.species) to[l] += part[j] * (curve[base + l] - curve[j]);
+				if (S.speciesOf(j) == B.species) to[l] += part[j] * exchangeWeight(flags[l], weight[l], k) * (curve[base + l] - curve[j]);
 			}
 		else
 #pragma omp simd
 			for (int l = 0; l < blockSize; l++) {
 				const int32_t j = nb[k * blockSize + l];
-				to[l] += part[j] * (curve[base + l] - curve[j]);
+				to[l] += part[j] * exchangeWeight(flags[l], weight[l], k) * (curve[base + l] - curve[j]);
 			}
 	for (int l = 0; l < blockSize; l++)
 		to[l] *= share * part[base + l];

@@ -42,7 +42,34 @@ string numberText(Real v)
 	return s.str();
 }
 
-void checkMotion(const Body& b)
+bool leavesPlane(const State& s) { return (s.blockedDOFs & (State::DOF_Z | State::DOF_RX | State::DOF_RY)) != (State::DOF_Z | State::DOF_RX | State::DOF_RY); }
+
+namespace {
+	constexpr Real lightest = 0.05, heaviest = 2; ///< weight
+	/// Mass over that of a full cell.
+	Real weightIn(int dimension, const Body& b)
+	{
+		return b.state->mass / (b.material->density * mca::cellIn(dimension, 2. * static_cast<const Sphere*>(b.shape.get())->radius));
+	}
+	bool fits(int dimension, const Body& b)
+	{
+		const Real w = weightIn(dimension, b);
+		return w >= lightest && w <= heaviest;
+	}
+} // namespace
+
+int dimensionOf(const Scene& scene)
+{
+	const Body* first = nullptr;
+	for (const auto& b : scene.bodies->body) {
+		if (!isAutomaton(b) || !b->state) continue;
+		if (leavesPlane(*b->state)) return 3;
+		if (!first) first = b.get();
+	}
+	return first && fits(3, *first) && !fits(2, *first) ? 3 : 2;
+}
+
+void checkMotion(const Body& b, int dimension)
 {
 	const State& s = *b.state;
 	const auto&  x = s.se3.position;
@@ -52,13 +79,16 @@ void checkMotion(const Body& b)
 	if (!(std::fabs(s.se3.orientation.coeffs().squaredNorm() - 1.) < 0.1)) refuseBody(b, "ori is no rotation; it must be a quaternion of norm 1.");
 	if (!x.allFinite() || !s.vel.allFinite() || !s.angVel.allFinite() || !s.se3.orientation.coeffs().allFinite())
 		refuseBody(b, "position, velocity, angular velocity or orientation is not finite; give finite numbers.");
-	if (s.vel[2] != 0 || s.angVel[0] != 0 || s.angVel[1] != 0)
+	if (dimension == 2 && (s.vel[2] != 0 || s.angVel[0] != 0 || s.angVel[1] != 0))
 		refuseBody(
 			b,
 			"velocity z = " + numberText(s.vel[2]) + " m/s, angular velocity x, y = " + numberText(s.angVel[0]) + ", " + numberText(s.angVel[1])
 				+ " rad/s; in plane strain (x, y) they must be 0.");
-	if (!(std::fabs(x[0]) < reach && std::fabs(x[1]) < reach))
-		refuseBody(b, "position (" + numberText(x[0]) + ", " + numberText(x[1]) + ") m must be within 1e9 diameters of the origin.");
+	if (std::fabs(x[0]) < reach && std::fabs(x[1]) < reach && (dimension == 2 || std::fabs(x[2]) < reach)) return;
+	refuseBody(
+		b,
+		"position (" + numberText(x[0]) + ", " + numberText(x[1]) + (dimension == 2 ? string() : ", " + numberText(x[2]))
+			+ ") m must be within 1e9 diameters of the origin.");
 }
 
 size_t materialIndex(const McaMat* m, vector<const McaMat*>& known, vector<mca::Material>& materials)
@@ -80,45 +110,63 @@ void checkNumbers(const Scene& scene)
 				+ "; the saved scene is damaged or was edited.");
 }
 
-McaBodies::McaBodies(const Scene& scene, int seed)
+McaBodies::McaBodies(const Scene& scene, int seed, int dimension)
 {
 	checkNumbers(scene);
 	for (const auto& b : scene.bodies->body)
-		if (isAutomaton(b)) add(*b, seed);
+		if (isAutomaton(b)) add(*b, seed, dimension);
 }
 
-void McaBodies::add(const Body& b, int seed)
+namespace {
+	[[noreturn]] void refuseMass(const Body& b, int dimension)
+	{
+		const string mass = "mass " + (dimension == 2 ? std::to_string(b.state->mass) + " kg/m" : numberText(b.state->mass) + " kg");
+		string       other;
+		if (fits(5 - dimension, b)) other = string("It is that of an automaton in ") + (dimension == 2 ? "space" : "plane strain") + ": ";
+		const Real   w = weightIn(dimension, b);
+		throw mca::Error(
+			"body " + std::to_string(b.id) + ": " + mass + " is " + std::to_string(w) + " of the full cell (" + numberText(b.state->mass / w)
+			+ "); it must be 0.05 to 2. " + other
+			+ (dimension == 2
+		                   ? "In plane strain the mass is density times area per 1 m of thickness, and z and the rotations about x and y are blocked"
+		                   : "In space the mass is density times volume, and every automaton of the scene is in space as soon as one may leave the "
+				     "plane (z, or a rotation about x or y, is not blocked)")
+			+ ": make the bodies with packings.addBodies.");
+	}
+} // namespace
+
+void McaBodies::add(const Body& b, int seed, int dimension)
 {
 	const auto* m = static_cast<const McaMat*>(b.material.get());
 	if (!b.state) throw mca::Error("body " + std::to_string(b.id) + ": state is None; give it a McaState (material.newAssocState()).");
 	const State& s  = *b.state;
 	auto*        ms = castTo<McaState>(b.state.get());
 	if (!ms) throw mca::Error("body " + std::to_string(b.id) + " has material McaMat but not a McaState; make its state with material.newAssocState().");
-	mca::automata::Automaton a;
+	mca::AutomatonStart a;
 	a.material = int(materialIndex(m, known, materials));
-	a.position = vec(s.se3.position), a.velocity = vec(s.vel), a.omega = s.angVel[2];
-	a.angle         = 2. * std::atan2(s.se3.orientation.z(), s.se3.orientation.w());
-	a.mass          = s.mass;
-	a.inertia       = s.inertia[2];
-	a.diameter      = 2. * static_cast<Sphere*>(b.shape.get())->radius;
-	const Real full = m->density * mca::Lattice::cell(a.diameter);
-	a.weight        = a.mass / full;
+	a.position = triple(s.se3.position), a.velocity = triple(s.vel), a.spin = triple(s.angVel);
+	a.angle    = triple(angleOf(s.se3.orientation, dimension));
+	a.mass     = s.mass;
+	a.inertia  = s.inertia[2];
+	a.diameter = 2. * static_cast<Sphere*>(b.shape.get())->radius;
+	a.weight   = weightIn(dimension, b);
 	if (std::fabs(a.weight - 1.) < 1e-9) a.weight = 1.;
-	if (a.mass > 0 && (a.weight < 0.05 || a.weight > 2))
+	if (a.mass > 0 && !fits(dimension, b)) refuseMass(b, dimension);
+	if (dimension == 3 && !(s.inertia[0] == s.inertia[2] && s.inertia[1] == s.inertia[2]))
 		throw mca::Error(
-			"body " + std::to_string(b.id) + ": mass " + std::to_string(a.mass) + " kg/m is " + std::to_string(a.weight) + " of the full cell ("
-			+ std::to_string(full)
-			+ " kg/m); it must be 0.05 to 2. In plane strain the mass is density times area per 1 m of thickness: make the bodies with "
-		          "packings.addBodies.");
+			"body " + std::to_string(b.id) + ": inertia (" + numberText(s.inertia[0]) + ", " + numberText(s.inertia[1]) + ", "
+			+ numberText(s.inertia[2]) + ") kg m2 must be the same about all axes, that of a sphere.");
 	if (ms->strength == 0) ms->strength = drawStrength(*m, seed, b.id);
-	a.strength = ms->strength;
-	a.eqps     = ms->plasticStrain;
+	a.strength  = ms->strength;
+	a.eqps      = ms->plasticStrain;
 	a.triangles = ms->triangles;
-	a.id       = b.id;
-	a.group    = b.groupMask;
-	for (int c = 0; c < mca::dim; c++)
-		a.free[c] = !(s.blockedDOFs & translation(c));
-	a.freeR = !(s.blockedDOFs & State::DOF_RZ);
+	if (ms->mirrors < 0 || ms->mirrors > 7)
+		throw mca::Error("body " + std::to_string(b.id) + ": state.mirrors = " + std::to_string(ms->mirrors) + " must be from 0 to 7.");
+	for (size_t c = 0; c < 3; c++)
+		a.mirror[c] = (ms->mirrors >> c) & 1;
+	a.id        = b.id;
+	a.group     = b.groupMask;
+	a.free = freeWays(s), a.freeSpin = freeTurns(s);
 	automata.push_back(a);
 	ids.push_back(b.id);
 }

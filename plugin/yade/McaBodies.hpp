@@ -2,7 +2,7 @@
 // Automata as YADE's bodies hold them: the same reading for the fast engine and for the law in YADE's loop.
 #pragma once
 #include "McaMat.hpp"
-#include "automata/solver.hpp"
+#include "automata/automata.hpp"
 #include <core/Body.hpp>
 
 namespace yade {
@@ -14,21 +14,25 @@ bool isAutomaton(const shared_ptr<Body>& b);
 void checkNumbers(const Scene& scene);
 /// Throws mca::Error: what McaEngine cannot take over of a body.
 [[noreturn]] void refuseBody(const Body& b, const string& what);
-/// Throws mca::Error unless McaEngine can take over the motion of a body: finite, in the plane.
-void   checkMotion(const Body& b);
+/// 3 when an automaton of the scene may leave the plane (x, y), or has the mass of one in space; else 2.
+int dimensionOf(const Scene& scene);
+/// May move along z or turn about x or y.
+bool leavesPlane(const State& s);
+/// Throws mca::Error unless McaEngine can take over the motion of a body: finite, in the plane when that is the dimension.
+void   checkMotion(const Body& b, int dimension);
 string numberText(Real v);
 
 /// All automata of the scene, ascending ids. Strengths that are zero are drawn and stored in the states.
 struct McaBodies {
-	vector<mca::automata::Automaton> automata;
-	vector<mca::Material>            materials;
-	vector<const McaMat*>            known; ///< of materials
-	vector<int>                      ids;
-	/// Throws mca::Error: material out of range, no McaState, mass that is not that of plane strain.
-	McaBodies(const Scene& scene, int seed);
+	vector<mca::AutomatonStart> automata;
+	vector<mca::Material>       materials;
+	vector<const McaMat*>       known; ///< of materials
+	vector<int>                 ids;
+	/// Throws mca::Error: material out of range, no McaState, mass that is not that of the dimension.
+	McaBodies(const Scene& scene, int seed, int dimension);
 
 private:
-	void add(const Body& b, int seed);
+	void add(const Body& b, int seed, int dimension);
 };
 /// Place of m in known, appended if need be.
 size_t materialIndex(const McaMat* m, vector<const McaMat*>& known, vector<mca::Material>& materials);

@@ -4,16 +4,14 @@
 #include <core/Scene.hpp>
 #include "McaLook.hpp"
 #include "McaVec.hpp"
+#include <automata/automata.hpp>
 
 namespace yade {
 YADE_PLUGIN((McaEngine));
 
-using mca::automata::Solver;
-using mca::automata::Store;
-
-mca::automata::Options McaEngine::solverOptions(Scene* scene) const
+mca::AutomataOptions McaEngine::solverOptions(Scene* scene) const
 {
-	mca::automata::Options o;
+	mca::AutomataOptions o;
 	if (volumeRule == "affine") o.volumeRule = mca::VolumeRule::affine;
 	else if (volumeRule == "inversePower") o.volumeRule = mca::VolumeRule::inversePower;
 	else if (volumeRule == "meanDistance") o.volumeRule = mca::VolumeRule::meanDistance;
@@ -30,6 +28,7 @@ mca::automata::Options McaEngine::solverOptions(Scene* scene) const
 	within("volumeFilter", volumeFilter, 0., 1.);
 	within("writePeriod", writePeriod, 0, 2147483647.);
 	within("gravity x [m/s2]", gravity[0], -1e15, 1e15), within("gravity y [m/s2]", gravity[1], -1e15, 1e15);
+	within("gravityZ [m/s2]", gravityZ, -1e15, 1e15);
 	o.volumeFilter = volumeFilter, o.linkFactor = linkFactor, o.skin = skin, o.sleeping = sleeping, o.contacts = contacts;
 	o.account = account || scene->trackEnergy;
 	return o;
@@ -39,7 +38,7 @@ mca::automata::Options McaEngine::solverOptions(Scene* scene) const
 void McaEngine::takeOptions(Scene* scene)
 {
 	const auto now  = solverOptions(scene);
-	auto&      mine = solver->options;
+	auto&      mine = solver->options();
 	const auto kept = [](const char* name, bool same) {
 		if (!same)
 			throw mca::Error(
@@ -55,7 +54,7 @@ void McaEngine::takeOptions(Scene* scene)
 /// Other engines of the scene that would move automata, too, or expect that this one does what it does not.
 void McaEngine::checkScene(Scene* scene) const
 {
-	if (coupled && gravity != Vector2r::Zero())
+	if (coupled && acceleration() != Vector3r::Zero())
 		throw mca::Error("McaEngine: gravity acts on automata only, and the grid that they are tied to would not fall; set gravity = (0, 0).");
 	const Engine* newton = nullptr;
 	for (const auto& e : scene->engines) {
@@ -86,7 +85,7 @@ void McaEngine::checkScene(Scene* scene) const
 			throw mca::Error(
 				"McaEngine: NewtonIntegrator (mask " + std::to_string(mask) + ") would move body " + std::to_string(b->id) + " (mask "
 				+ std::to_string(b->groupMask) + ") a second time; give it a mask that no automaton has, or leave it out.");
-	if (g != Vector3r::Zero() && gravity == Vector2r::Zero() && !warnedGravity) {
+	if (g != Vector3r::Zero() && acceleration() == Vector3r::Zero() && !warnedGravity) {
 		warnedGravity = true;
 		LOG_WARN("McaEngine: the gravity of NewtonIntegrator acts on the bodies of its mask only, not on automata; theirs is McaEngine.gravity.");
 	}
@@ -94,22 +93,27 @@ void McaEngine::checkScene(Scene* scene) const
 
 void McaEngine::readExternal(Scene* scene)
 {
-	Store& S = solver->store;
-	if (!readForces && gravity == Vector2r::Zero()) {
-		if (!S.outside.empty()) solver->clearForces();
+	const Vector3r g = acceleration();
+	if (dimension == 2 && gravityZ != 0) throw mca::Error("McaEngine: gravityZ is for bodies in space; these are in plane strain: set it to 0.");
+	if (!readForces && g == Vector3r::Zero()) {
+		if (solver->hasForces()) solver->clearForces();
 		return;
 	}
 	solver->clearForces();
-	if (gravity != Vector2r::Zero())
-		for (size_t i = 0; i < S.size(); i++)
-			if (S.id[i] >= 0) solver->addForce(i, vec(gravity) * S.mass[i], 0.);
+	if (g != Vector3r::Zero()) solver->addGravity(triple(g));
 	if (!readForces) return;
 	scene->forces.sync();
 	for (int id : order) {
 		const Vector3r &f = scene->forces.getForce(id), &t = scene->forces.getTorque(id);
 		if (!f.allFinite() || !t.allFinite()) throw mca::Error("body " + std::to_string(id) + ": an engine has put a force on it that is not finite.");
-		if (!isZero(vec(f)) || t[2] != 0) solver->addForce(size_t(solver->indexOf(id)), vec(f), t[2]);
+		if (f != Vector3r::Zero() || t != Vector3r::Zero()) solver->addForce(id, triple(f), triple(t));
 	}
+}
+
+mca::automata::Solver& McaEngine::automata()
+{
+	if (auto* plane = solver->asPlane()) return *plane;
+	throw mca::Error("McaEngine: its automata are in space, and a grid is in plane strain: rows in space cannot be tied.");
 }
 
 Real McaEngine::criticalTimeStep() const { return solver ? solver->criticalStep() : std::numeric_limits<Real>::infinity(); }
@@ -131,7 +135,7 @@ void McaEngine::computeForces(Scene* scene)
 void McaEngine::forget()
 {
 	locked([&] {
-		if (!solver || solver->counters.steps > 0) return;
+		if (!solver || solver->counters().steps > 0) return;
 		solver.reset();
 		bodies.clear(), same.clear(), known.clear(), order.clear();
 		home.reset();
@@ -151,9 +155,8 @@ void McaEngine::checkStep(Scene* scene) const
 {
 	const Real limit = solver->criticalStep();
 	if (scene->dt > limit && !shortenStep(scene, limit)) {
-		const auto& S = solver->store;
 		std::ostringstream s;
-		s << "McaEngine: O.dt = " << scene->dt << " s is above the largest stable step " << limit << " s of body " << S.id[solver->stiffestAutomaton()]
+		s << "McaEngine: O.dt = " << scene->dt << " s is above the largest stable step " << limit << " s of body " << solver->stiffest()
 		  << ". Set O.dt below it, or adaptive=True, or put a McaTimeStepper before it.";
 		throw mca::Error(s.str());
 	}
@@ -176,7 +179,7 @@ void McaEngine::step()
 		if (!(dtFactor >= 1e-6 && dtFactor <= 1)) solverOptions(scene); // refuses it
 		if (adaptive && !order.empty()) {
 			const Real limit = dtFactor * solver->criticalStep();
-			scene->dt        = solver->counters.steps > 0 && scene->dt > 0 ? std::min(limit, 1.1 * scene->dt) : limit;
+			scene->dt        = solver->counters().steps > 0 && scene->dt > 0 ? std::min(limit, 1.1 * scene->dt) : limit;
 		}
 		integrate(scene);
 		finish(scene);
@@ -195,7 +198,7 @@ void McaEngine::finish(Scene* scene)
 		writeBodies(scene);
 	}
 	if (!TimingInfo::enabled) return;
-	const auto&  c     = solver->counters;
+	const auto&  c     = solver->counters();
 	const Real   ns[]  = { c.nsSearch, c.nsDensity, c.nsStress, c.nsContact, c.nsForce, c.nsFracture, c.nsIntegrate };
 	const char*  names[] = { "contact search", "density", "stress", "contacts", "forces", "fracture", "integration" };
 	auto&        D     = *timingDeltas;

@@ -2,7 +2,7 @@
 #pragma once
 #include "McaMat.hpp"
 #include "McaSolverEngine.hpp"
-#include "automata/solver.hpp"
+#include "automata/automata.hpp"
 #include <boost/weak_ptr.hpp>
 #include <sdk/Blob.hpp>
 #include <core/Timing.hpp>
@@ -30,7 +30,8 @@ public:
 	void computeForces(Scene* scene);
 	void integrate(Scene* scene);
 	void finish(Scene* scene);
-	mca::automata::Solver& automata() { return *solver; }
+	/// In plane strain. Throws mca::Error in space.
+	mca::automata::Solver& automata();
 	/// ensureBuilt() where a script asks: only in a scene that has this engine and where something may have changed.
 	void refresh(Scene* scene);
 	/// The solver holds what the bodies hold: gathers them the first time, later takes over what scripts have changed. Throws mca::Error.
@@ -46,26 +47,29 @@ public:
 	py::dict   countersNow();
 	py::dict   phases();
 	py::list   linkList();
-	void       setViscous(const vector<int>& ids, const Vector2r& normal);
+	void       setViscous(const vector<int>& ids, const py::object& normal);
 	long       automataCount() const;
-	Vector2r   momentum();
+	py::object momentum();
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(McaEngine, McaSolverEngine,
-		"Movable cellular automata in plane strain (x, y) on flat arrays: gathers all bodies whose material is :yref:`McaMat` and shape "
+		"Movable cellular automata in plane strain (x, y) or in space on flat arrays: gathers all bodies whose material is :yref:`McaMat` and shape "
 		":yref:`Sphere`, keeps its own pairs and integrates them. "
+		"The dimension follows from the bodies: plane strain when all of them are blocked along z and about x and y, else space; a scene of both is "
+		"refused. "
 		"Whenever a script can look - the loop has stopped, a PyRunner or recorder is due, a file is written - the bodies hold what the engine "
 		"holds, and what the script then changes counts from the next "
 		"step on: positions, velocities, blocked degrees of freedom, masks, materials and their constants, plastic strains, temperatures, strengths, "
 		"bodies added and erased. What cannot be taken over "
 		"(mass, radius, results such as the pressure) is refused before anything moves. While the loop runs in the background, field() and the like "
 		"read the present state; bodies are those of the last look. "
-		"Masses are per 1 m of thickness: density times the area an automaton stands for (packings.addBodies sets them). "
+		"Masses are density times the volume that an automaton stands for, in plane strain per 1 m of thickness (packings.addBodies sets them); so are "
+		"all forces, energies and momenta. "
 		"Bodies with different masks do not link at the start; they meet as contacts. Blocked degrees of freedom keep their velocity. Walls, boxes, "
 		"facets and clumps are refused (the law in YADE's own loop has them).",
 		((string, volumeRule, "affine", , "'affine' (default: J = det F of the links, exact in any homogeneous deformation), 'inversePower' (density "
-		    "from the mean of (d/r)^2) or 'meanDistance' (as published; its lattice buckles under strong plastic compression). Read when bodies are "
-		    "gathered; a later change is refused"))
+		    "from the mean of (d/r)^2) or 'meanDistance' (as published; its lattice buckles under strong plastic compression); in space 'affine' only. "
+		    "Read when bodies are gathered; a later change is refused"))
 		((Real, linkFactor, 1.2, , "bodies closer than this many diameters are linked at the start [-], 1.02 ... 1.5. Read when bodies are gathered; "
 		    "a later change is refused"))
 		((Real, skin, 0.4, , "range of the contact search beyond touching, in diameters [-], 0.05 ... 1. Read at every look"))
@@ -84,6 +88,8 @@ public:
 		((bool, readForces, false, , "add the forces that other engines put on the bodies (O.forces). Read in every step"))
 		((Vector2r, gravity, Vector2r::Zero(), , "acceleration of all automata [m/s2]; refused in a scene coupled to a grid, which has none. Read in "
 		    "every step"))
+		((Real, gravityZ, 0, , "acceleration of all automata along z [m/s2]; in space only. Read in every step"))
+		((int, dimension, 2, Attr::readonly, "2: plane strain, 3: space; found when bodies are gathered"))
 		((long, lastWritten, -1, Attr::readonly|Attr::noSave, "step of the last write to the bodies"))
 		((bool, forcesReady, false, Attr::hidden, "forces of this step are computed; integration has yet to follow"))
 		((bool, bodiesSaved, false, Attr::hidden, "the bodies saved with it hold what it holds, so that differences are a script's"))
@@ -91,6 +97,7 @@ public:
 		((vector<int>, order, , Attr::hidden, "body ids, ascending"))
 		((vector<Vector3r>, viscous, , Attr::hidden, "of setViscous(), kept for the next time that bodies are gathered: id [-] and coefficients "
 		    "along x and y [kg/(m s)]"))
+		((vector<Real>, viscousZ, , Attr::hidden, "coefficients along z of the same [kg/s]"))
 		,
 		timingDeltas = shared_ptr<TimingDeltas>(new TimingDeltas);
 		,
@@ -101,23 +108,27 @@ public:
 		.def("field", &McaEngine::fieldByName, (py::arg("name")), "Copy of one quantity of all automata now, in the order of `ids`, numpy (N,): 'x', "
 		    "'y' [m], 'vx', 'vy' [m/s], 'omega' [rad/s], 'angle' [rad], 'mass' [kg/m], 'pressure' [Pa], 'volumeRatio' [-], 'equivalentStress' [Pa], "
 		    "'plasticStrain' [-], 'temperature' [K], 'stressZZ' [Pa], 'fx', 'fy' [N/m], 'links' [-], 'brokenLinks' [-], 'strength' [-], 'diameter' "
-		    "[m], 'weight' [-], 'material' [-]. What a script has changed in the bodies counts already. Raises RuntimeError for another name.")
+		    "[m], 'weight' [-], 'material' [-]; in space 'z', 'vz', 'fz' as well, 'omegaX', 'omegaY', 'omegaZ' for 'omega', no 'angle' and "
+		    "'stressZZ', and mass and forces are in kg and N. What a script has changed in the bodies counts already. Raises RuntimeError for another "
+		    "name.")
 		.def("fields", &McaEngine::fieldsByName, (py::arg("names")), "Copies of several quantities of one moment, dict of name -> numpy (N,) in the "
 		    "order of `ids`; names: a list of those that field() takes, and 'ids' (int). Bodies and engine are compared once, not once for each "
 		    "name. Raises RuntimeError for another name, TypeError when names is no list or tuple of texts.")
 		.add_property("ids", &McaEngine::identifiers, "Ids of the bodies, ascending; numpy (N,) int.")
-		.def("energies", &McaEngine::energies, "Energies [J/m] now; dissipations since the start when the account is kept. 'bookedError': kinetic "
-		    "energy minus all work booked (round-off); 'halfStep': what 'kinetic', 'external' and 'viscous' change in the half step between the "
-		    "stresses and the velocities; 'total': independent sum at the time of the stresses.")
+		.def("energies", &McaEngine::energies, "Energies now, in plane strain [J/m], in space [J]; dissipations since the start when the account is "
+		    "kept. 'bookedError': kinetic energy minus all work booked (round-off); 'halfStep': what 'kinetic', 'external' and 'viscous' change in the "
+		    "half step between the stresses and the velocities; 'total': independent sum at the time of the stresses.")
 		.def("counters", &McaEngine::countersNow, "Work done so far: steps, searches (for contacts of all), localSearches (where links broke), sorts, "
 		    "blockSteps (blocks of 64 computed), blocks, brokenLinks, clamped (equation of state beyond its clamp), "
 		    "deepest (smallest distance / rest distance), contacts, awake.")
 		.def("links", &McaEngine::linkList, "Pairs of body ids whose link holds, list of (id1, id2).")
 		.def("setViscous", &McaEngine::setViscous, (py::arg("ids"), py::arg("normal")), "Viscous (transmitting) boundary of Lysmer and Kuhlemeyer "
-		    "(1969) on these bodies: traction -rho cP v_n n - rho cS v_t on their outer width; normal is (1,0), (-1,0), (0,1) or (0,-1).")
+		    "(1969) on these bodies: traction -rho cP v_n n - rho cS v_t on their outer width, in space on their share of the rectangle they "
+		    "cover; normal is (1,0), (-1,0), (0,1) or (0,-1), in space one of the six of three components. Read now; "
+		    "RuntimeError for another normal and for an id that is no automaton.")
 		.def("phases", &McaEngine::phases, "Time spent per phase [ns] while O.timingEnabled.")
 		.add_property("count", &McaEngine::automataCount, "Number of automata.")
-		.add_property("momentum", &McaEngine::momentum, "Momentum of all automata [N s/m].")
+		.add_property("momentum", &McaEngine::momentum, "Momentum of all automata: Vector2 [N s/m] in plane strain, Vector3 [N s] in space.")
 	)
 	// clang-format on
 
@@ -130,19 +141,19 @@ private:
 		// written by the engine
 		Vector3r    pos = Vector3r::Zero(), vel = Vector3r::Zero(), angVel = Vector3r::Zero();
 		Quaternionr ori = Quaternionr::Identity();
-		Real        angle = NaN; ///< of ori, as the solver has it
+		Vector3r    angle = Vector3r::Constant(NaN); ///< of ori, as the solver has it
 		Real        pressure = 0, volumeRatio = 1, equivalentStress = 0, plasticStrain = 0, temperature = 0, stressZZ = 0, dissipated = 0;
 		int         links = 0, brokenLinks = 0;
 		// read only
 		Real     mass = 0, inertia = 0, radius = 0, strength = 0;
-		int      mask = 0, triangles = 0;
+		int      mask = 0, triangles = 0, mirrors = 0;
 		unsigned blocked = 0;
 	};
-	shared_ptr<mca::automata::Solver> solver;
-	boost::weak_ptr<Scene>            home;     ///< scene of its bodies
-	vector<shared_ptr<Body>>          bodies;   ///< of order
-	vector<Same>                      same;     ///< of order
-	vector<shared_ptr<Material>>      known;    ///< of the solver's materials
+	shared_ptr<mca::Automata>    solver;
+	boost::weak_ptr<Scene>       home;   ///< scene of its bodies
+	vector<shared_ptr<Body>>     bodies; ///< of order
+	vector<Same>                 same;   ///< of order
+	vector<shared_ptr<Material>> known;  ///< of the solver's materials
 	bool looked = true;  ///< a script may have changed something since the last step
 	int  lost   = -1;    ///< body whose change by a script was lost; told by the next step
 	bool stale  = false; ///< the bodies do not hold the present state
@@ -155,9 +166,11 @@ private:
 	bool              standsIn(const Scene& scene) const; ///< in its O.engines
 	shared_ptr<Scene> myScene(const char* call) const;
 	void              settleIn(Scene* scene);
-	bool              isMine(int id) const { return solver && solver->indexOf(id) >= 0; }
+	bool              isMine(int id) const { return solver && solver->holds(id); }
 	void              gather(Scene* scene);
-	void checkBodies(const Scene&) const;
+	void              checkBodies(const Scene&, int dimensionNow) const;
+	Vector3r          place(const mca::AutomatonNow&, const State&) const;
+	template <class F> void dropDampers(F&& goes);
 	void              bind(Scene* scene);
 	void              adoptChanges(Scene* scene);
 	vector<Change>    changes(bool& rebuild);
@@ -168,17 +181,17 @@ private:
 	void              apply(const vector<Change>& list);
 	void              writeBodies(Scene* scene);
 	void              writeEnergies(Scene* scene);
-	bool              writeBody(State& s, Same& was, size_t i) const;
+	bool              writeBody(State& s, Same& was, const mca::AutomatonNow& now) const;
 	void              takeConstants(size_t q);
 	void              takeResults(size_t q);
 	// step
-	mca::automata::Options solverOptions(Scene*) const;
-	void                   takeOptions(Scene*);
-	void                   checkScene(Scene*) const;
-	void                   readExternal(Scene*);
-	void                   checkStep(Scene*) const;
+	mca::AutomataOptions solverOptions(Scene*) const;
+	Vector3r             acceleration() const { return Vector3r(gravity[0], gravity[1], gravityZ); }
+	void                 takeOptions(Scene*);
+	void                 checkScene(Scene*) const;
+	void                 readExternal(Scene*);
+	void                 checkStep(Scene*) const;
 	template <class F> auto read(const char* call, F&& f);
-	vector<size_t>         places() const; ///< of order in the solver's arrays
 };
 REGISTER_SERIALIZABLE(McaEngine);
 } // namespace yade

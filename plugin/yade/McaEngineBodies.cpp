@@ -9,9 +9,7 @@
 #include <unordered_set>
 
 namespace yade {
-using mca::automata::Automaton;
-using mca::automata::Solver;
-using mca::automata::Store;
+using mca::AutomatonStart;
 
 namespace {
 	/// A body that an engine takes for the first time brings no results of another one: they could not go on.
@@ -68,7 +66,7 @@ void McaEngine::settleIn(Scene* scene)
 	if (present.get() != scene) throw mca::Error("McaEngine: it runs in a scene that is not the present one.");
 	const bool loaded = solver && bodies.empty() && !order.empty() && home.expired();
 	if (!loaded) {
-		if (!bodies.empty()) viscous.clear(); // dampers of bodies that are gone; those given before the first step stay
+		if (!bodies.empty()) viscous.clear(), viscousZ.clear(); // dampers of bodies that are gone; those given before the first step stay
 		solver.reset();
 		bodies.clear(), same.clear(), known.clear(), order.clear();
 		lost  = -1;
@@ -84,7 +82,7 @@ void McaEngine::bind(Scene* scene)
 	checkNumbers(*scene);
 	vector<shared_ptr<Body>> found;
 	for (int id : order) {
-		if (solver->indexOf(id) < 0)
+		if (!solver->holds(id))
 			throw mca::Error(
 				"McaEngine: body " + std::to_string(id)
 				+ " stands in the saved engine's list, but not in its state; the file is damaged or was changed.");
@@ -95,10 +93,9 @@ void McaEngine::bind(Scene* scene)
 				+ ", which is no automaton (material McaMat, shape Sphere, state McaState); the file is damaged, or the body was changed since "
 			          "it was loaded.");
 	}
-	known.assign(solver->store.materials.size(), nullptr);
-	const Store& S = solver->store;
+	known.assign(solver->materials().size(), nullptr);
 	for (size_t q = 0; q < order.size(); q++)
-		if (found[q]) known[size_t(S.species[size_t(S.speciesOf(size_t(solver->indexOf(order[q]))))].material)] = found[q]->material;
+		if (found[q]) known[size_t(solver->fixed(order[q]).material)] = found[q]->material;
 	bodies = found;
 	same.assign(order.size(), Same());
 	for (size_t q = 0; q < order.size(); q++)
@@ -107,37 +104,42 @@ void McaEngine::bind(Scene* scene)
 	if (!bodiesSaved) writeBodies(scene);
 }
 
+Vector3r McaEngine::place(const mca::AutomatonNow& a, const State& s) const
+{
+	return Vector3r(a.position[0], a.position[1], dimension == 2 ? s.se3.position[2] : a.position[2]);
+}
+
 /// What is read when a body is taken over.
 void McaEngine::takeConstants(size_t q)
 {
-	const Store& S   = solver->store;
-	const size_t i   = size_t(solver->indexOf(order[q]));
-	Same&        was = same[q];
-	was.mass = S.mass[i], was.inertia = S.inertia[i], was.radius = 0.5 * S.diameter[i], was.strength = S.strength[i], was.mask = S.group[i];
-	was.material = known[size_t(S.species[size_t(S.speciesOf(i))].material)].get();
+	const mca::AutomatonFixed a = solver->fixed(order[q]);
+	Same&                     was = same[q];
+	was.mass = a.mass, was.inertia = a.inertia, was.radius = 0.5 * a.diameter, was.strength = a.strength, was.mask = a.group;
+	was.material = known[size_t(a.material)].get();
 	if (!bodies[q]) return;
 	was.state = bodies[q]->state, was.shape = bodies[q]->shape;
-	if (was.state) was.blocked = was.state->blockedDOFs, was.triangles = static_cast<const McaState&>(*was.state).triangles;
+	if (!was.state) return;
+	const auto& s = static_cast<const McaState&>(*was.state);
+	was.blocked = s.blockedDOFs, was.triangles = s.triangles, was.mirrors = s.mirrors;
 }
 
 /// The body of a loaded engine held what the engine holds when both were saved; a script may have changed it since.
 void McaEngine::takeResults(size_t q)
 {
 	if (!bodies[q]) return;
-	const Store&    S   = solver->store;
-	const size_t    i   = size_t(solver->indexOf(order[q]));
+	const mca::AutomatonNow a = solver->now(order[q]);
 	const McaState& s   = static_cast<const McaState&>(*bodies[q]->state);
 	Same&           was = same[q];
-	was.pos = vector3(S.position.at(i), s.se3.position), was.vel = vector3(S.velocity.at(i)), was.angVel = Vector3r(0, 0, S.omega[i]);
-	was.angle = S.angle[i], was.ori = Quaternionr(AngleAxisr(was.angle, Vector3r::UnitZ()));
+	was.pos = place(a, s), was.vel = vector3(a.velocity), was.angVel = vector3(a.spin);
+	was.angle = vector3(a.angle), was.ori = orientationOf(was.angle, dimension);
 	was.blocked = ~0u; // to be compared with what the solver has
-	was.pressure = S.mean[i], was.volumeRatio = S.J[i], was.plasticStrain = S.eqps[i], was.temperature = S.temperature[i], was.stressZZ = S.szz[i],
-	was.dissipated       = S.heat.empty() ? 0. : S.heat[i];
+	was.pressure = a.pressure, was.volumeRatio = a.volumeRatio, was.plasticStrain = a.plasticStrain, was.temperature = a.temperature;
+	was.stressZZ = a.stressZZ, was.dissipated = a.dissipated.value_or(0.);
 	was.equivalentStress = s.equivalentStress, was.links = s.links, was.brokenLinks = s.brokenLinks; // follow from the rest
 }
 
 /// Throws Error when a body cannot be an automaton, or would be passed through.
-void McaEngine::checkBodies(const Scene& scene) const
+void McaEngine::checkBodies(const Scene& scene, int dimensionNow) const
 {
 	for (const auto& b : scene.bodies->body) {
 		if (!b) continue;
@@ -160,17 +162,26 @@ void McaEngine::checkBodies(const Scene& scene) const
 			throw mca::Error(
 				"McaEngine: body " + std::to_string(b->id)
 				+ " has material McaMat but not a McaState; make its state with material.newAssocState().");
-		checkMotion(*b);
+		checkMotion(*b, dimensionNow);
 	}
+}
+
+template <class F> void McaEngine::dropDampers(F&& goes)
+{
+	size_t kept = 0;
+	for (size_t k = 0; k < viscous.size(); k++)
+		if (!goes(int(viscous[k][0]))) viscous[kept] = viscous[k], viscousZ[kept] = viscousZ[k], kept++;
+	viscous.resize(kept), viscousZ.resize(kept);
 }
 
 void McaEngine::gather(Scene* scene)
 {
-	checkBodies(*scene);
+	const int dimensionNow = dimensionOf(*scene);
+	checkBodies(*scene, dimensionNow);
 	std::unordered_set<const Body*> mine;
 	for (const auto& b : bodies)
 		if (b) mine.insert(b.get());
-	McaBodies now(*scene, seed);
+	McaBodies now(*scene, seed, dimensionNow);
 	vector<shared_ptr<Body>> list;
 	for (auto& a : now.automata) {
 		const auto& b = scene->bodies->body[size_t(a.id)];
@@ -180,22 +191,24 @@ void McaEngine::gather(Scene* scene)
 		a.temperature = s.temperature;
 		list.push_back(b);
 	}
-	auto fresh = shared_ptr<Solver>(new Solver);
+	shared_ptr<mca::Automata> fresh(mca::automataIn(dimensionNow));
 	// no automaton goes on: a new start, as in the next case of a sweep
-	const bool goesOn = solver && std::any_of(now.automata.begin(), now.automata.end(), [](const Automaton& a) { return !a.isNew; });
+	const bool goesOn = solver && std::any_of(now.automata.begin(), now.automata.end(), [](const AutomatonStart& a) { return !a.isNew; });
 	if (!goesOn && solver && carriesRows())
 		throw mca::Error("McaEngine: all automata are gone, and with them rows that are tied to a grid; they cannot be erased. Make a new McaEngine, "
 		                 "grid and coupler for the new bodies.");
+	if (goesOn && dimensionNow != dimension)
+		throw mca::Error(
+			string("McaEngine: the automata are in ") + (dimension == 2 ? "plane strain" : "space")
+			+ ", and a script has blocked or freed motion along z or about x or y since they were gathered; set blockedDOFs back.");
 	fresh->build(now.automata, now.materials, solverOptions(scene), goesOn ? solver.get() : nullptr);
 	std::unordered_set<int> newIds;
 	for (auto& a : now.automata)
 		if (a.isNew) newIds.insert(a.id);
 	if (solver) // the dampers of bodies that are gone go with them
-		viscous.erase(
-			std::remove_if(
-				viscous.begin(), viscous.end(), [&](const Vector3r& v) { return fresh->indexOf(int(v[0])) < 0 || newIds.count(int(v[0])); }),
-			viscous.end());
+		dropDampers([&](int id) { return !fresh->holds(id) || newIds.count(id); });
 	solver      = fresh;
+	dimension   = dimensionNow;
 	order       = now.ids;
 	bodies      = list;
 	forcesReady = false;
@@ -206,10 +219,8 @@ void McaEngine::gather(Scene* scene)
 				known.push_back(b->material);
 				break;
 			}
-	for (auto& v : viscous) {
-		const auto i = solver->indexOf(int(v[0]));
-		if (i >= 0) solver->setDamping(size_t(i), vec(v, 1));
-	}
+	for (size_t k = 0; k < viscous.size(); k++)
+		if (solver->holds(int(viscous[k][0]))) solver->setDamping(int(viscous[k][0]), { viscous[k][1], viscous[k][2], viscousZ[k] });
 	same.assign(order.size(), Same());
 	for (size_t q = 0; q < order.size(); q++)
 		takeConstants(q);
@@ -234,7 +245,7 @@ void McaEngine::ensureBuilt(Scene* scene)
 		takeOptions(scene);
 		adoptChanges(scene);
 	}
-	solver->options.account = account || scene->trackEnergy;
-	solver->timing          = TimingInfo::enabled;
+	solver->options().account = account || scene->trackEnergy;
+	solver->setTiming(TimingInfo::enabled);
 }
 } // namespace yade

@@ -10,8 +10,6 @@
 #include <unordered_set>
 
 namespace yade {
-using mca::automata::Store;
-
 /// What a script has changed in one body.
 struct McaEngine::Change {
 	size_t place; ///< in order
@@ -41,11 +39,11 @@ namespace {
 	{
 		soon(s.se3), soon(s.vel), soon(s.angVel), soon(s.inertia[2]), soon(s.blockedDOFs), soon(s.temperature), soon(s.brokenLinks);
 	}
-	void refuseTriangles(const Body& b, int now, int was)
+	void refuseEnds(const Body& b, const char* name, int now, int was)
 	{
 		refuseBody(
 			b,
-			"state.triangles = " + std::to_string(now) + " was changed (from " + std::to_string(was)
+			string("state.") + name + " = " + std::to_string(now) + " was changed (from " + std::to_string(was)
 				+ "); where a body ends is found when it is taken over for the first time. Set it back.");
 	}
 } // namespace
@@ -64,7 +62,7 @@ bool McaEngine::untouched(size_t q) const
 		| unlike(s.plasticStrain, was.plasticStrain);
 	d |= unlike(s.temperature, was.temperature) | unlike(s.stressZZ, was.stressZZ) | unlike(s.dissipated, was.dissipated)
 		| unlike(s.strength, was.strength);
-	d |= unlike(s.links, was.links) | unlike(s.brokenLinks, was.brokenLinks) | unlike(s.triangles, was.triangles);
+	d |= unlike(s.links, was.links) | unlike(s.brokenLinks, was.brokenLinks) | unlike(s.triangles, was.triangles) | unlike(s.mirrors, was.mirrors);
 	d |= unlike(static_cast<const Sphere&>(*was.shape).radius, was.radius);
 	return d == 0;
 }
@@ -94,7 +92,7 @@ bool McaEngine::sameMaterials() const
 	for (size_t k = 0; k < known.size(); k++)
 		if (known[k]) {
 			const mca::Material now = static_cast<const McaMat&>(*known[k]).toMaterial();
-			if (!mca::same(now, solver->store.materials[k])) return false;
+			if (!mca::same(now, solver->materials()[k])) return false;
 		}
 	return true;
 }
@@ -117,16 +115,14 @@ vector<McaEngine::Change> McaEngine::changes(bool& rebuild)
 
 McaEngine::Change McaEngine::changeOf(size_t q, bool& rebuild)
 {
-	const Store& S = solver->store;
-	const Body&  b = *bodies[q];
+	const Body& b = *bodies[q];
 	if (!isAutomaton(bodies[q])) refuseBody(b, "it is an automaton no more (its material or shape was replaced); erase it and add another body instead.");
 	const auto* m = b.state ? castTo<const McaState>(b.state.get()) : nullptr;
 	if (!m) refuseBody(b, "its state was replaced by one that is no McaState; make it with material.newAssocState().");
 	const McaState& s    = *m;
 	Same&           was  = same[q];
-	const size_t    i    = size_t(solver->indexOf(order[q]));
-	const bool      tied = S.flags[i] & mca::tiedBit;
-	const auto      free = [&](unsigned dof, Real inverse) { return !(s.blockedDOFs & dof) == (inverse > 0); };
+	const auto      a    = solver->fixed(order[q]);
+	const bool      tied = a.tied;
 	Change          c;
 	c.place         = q;
 	c.position      = s.se3.position != was.pos;
@@ -137,10 +133,13 @@ McaEngine::Change McaEngine::changeOf(size_t q, bool& rebuild)
 	c.temperature   = differs(s.temperature, was.temperature);
 	c.strength      = differs(s.strength, was.strength);
 	c.mask          = b.groupMask != was.mask;
-	bool sameFree   = free(State::DOF_RZ, S.perInertia[i]);
-	for (int k = 0; k < mca::dim; k++) sameFree &= free(translation(k), S.perMass[k][i]);
+	const mca::Ways free = freeWays(s), turns = freeTurns(s);
+	bool            sameFree = true;
+	for (size_t k = 0; k < 3; k++)
+		sameFree &= (k >= size_t(dimension) || free[k] == a.free[k]) && ((dimension == 2 && k < 2) || turns[k] == a.freeSpin[k]);
 	c.blocked = !tied && !sameFree;
-	if (c.position || c.velocity || c.spin || c.angle) checkMotion(b);
+	if (dimension == 2 && leavesPlane(s)) refuseBody(b, "blockedDOFs lets it leave the plane (x, y) of plane strain; block z, X and Y ('zXY') again.");
+	if (c.position || c.velocity || c.spin || c.angle) checkMotion(b, dimension);
 	if (tied && (c.position || c.velocity))
 		refuseBody(b, "it is tied to a grid, which moves it; its position and velocity cannot be set. Set those of the grid before the first step.");
 	if (c.plasticStrain && !(s.plasticStrain >= 0 && s.plasticStrain <= 1e6))
@@ -149,12 +148,13 @@ McaEngine::Change McaEngine::changeOf(size_t q, bool& rebuild)
 		refuseBody(b, "state.temperature = " + numberText(s.temperature) + " K must be above 0 and at most 1e9.");
 	if (c.strength && !(s.strength > 0 && s.strength <= 1e9))
 		refuseBody(b, "state.strength = " + numberText(s.strength) + " must be above 0 and at most 1e9.");
-	if (s.triangles != was.triangles) refuseTriangles(b, s.triangles, was.triangles);
+	if (s.triangles != was.triangles) refuseEnds(b, "triangles", s.triangles, was.triangles);
+	if (s.mirrors != was.mirrors) refuseEnds(b, "mirrors", s.mirrors, was.mirrors);
 	const Real radius = static_cast<const Sphere*>(b.shape.get())->radius;
 	if (differs(s.mass, was.mass) || differs(s.inertia[2], was.inertia) || differs(radius, was.radius))
 		refuseBody(
 			b,
-			"mass " + numberText(s.mass) + " kg/m, inertia " + numberText(s.inertia[2]) + " kg m or radius " + numberText(radius)
+			"mass " + numberText(s.mass) + ", inertia " + numberText(s.inertia[2]) + " or radius " + numberText(radius)
 				+ " m was changed (from " + numberText(was.mass) + ", " + numberText(was.inertia) + ", " + numberText(was.radius)
 				+ "); they are read when a body is taken over for the first time. Erase it and add another body.");
 	const auto result = [&](const char* name, Real now, Real before) {
@@ -177,29 +177,25 @@ McaEngine::Change McaEngine::changeOf(size_t q, bool& rebuild)
 
 void McaEngine::apply(const vector<Change>& list)
 {
-	Store& S      = solver->store;
-	bool   motion = false, masks = false;
+	bool motion = false, masks = false;
 	for (const auto& c : list)
 		motion |= c.motion(), masks |= c.mask;
 	if (motion && !forcesReady) stale = true, solver->computeForces(); // the strain of the last step belongs to the motion before the change
 	for (const auto& c : list) {
-		const Body&  b = *bodies[c.place];
-		const auto&  s = static_cast<const McaState&>(*b.state);
-		const size_t i = size_t(solver->indexOf(order[c.place])); // sorting may have moved it
-		Same&        now = same[c.place];
-		if (c.position) now.pos = s.se3.position, S.position.set(i, vec(now.pos));
-		if (c.velocity) now.vel = s.vel, S.velocity.set(i, vec(s.vel));
-		if (c.spin) now.angVel = s.angVel, S.omega[i] = s.angVel[2];
-		if (c.angle) now.ori = s.se3.orientation, now.angle = NaN, S.angle[i] = 2. * std::atan2(s.se3.orientation.z(), s.se3.orientation.w());
-		if (c.plasticStrain) S.eqps[i] = now.plasticStrain = s.plasticStrain;
-		if (c.temperature) S.temperature[i] = now.temperature = s.temperature;
-		if (c.strength) S.strength[i] = now.strength = s.strength;
-		if (c.mask) S.group[i] = now.mask = b.groupMask;
-		if (c.blocked) {
-			now.blocked = s.blockedDOFs;
-			for (int k = 0; k < mca::dim; k++) S.perMass[k][i] = s.blockedDOFs & translation(k) ? 0. : 1. / S.mass[i];
-			S.perInertia[i] = s.blockedDOFs & State::DOF_RZ ? 0. : 1. / S.inertia[i];
-		}
+		const Body& b = *bodies[c.place];
+		const auto& s = static_cast<const McaState&>(*b.state);
+		Same&       now = same[c.place];
+		mca::AutomatonChange to;
+		if (c.position) now.pos = s.se3.position, to.position = triple(now.pos);
+		if (c.velocity) now.vel = s.vel, to.velocity = triple(s.vel);
+		if (c.spin) now.angVel = s.angVel, to.spin = triple(s.angVel);
+		if (c.angle) now.ori = s.se3.orientation, now.angle.setConstant(NaN), to.angle = triple(angleOf(now.ori, dimension));
+		if (c.plasticStrain) to.plasticStrain = now.plasticStrain = s.plasticStrain;
+		if (c.temperature) to.temperature = now.temperature = s.temperature;
+		if (c.strength) to.strength = now.strength = s.strength;
+		if (c.mask) to.group = now.mask = b.groupMask;
+		if (c.blocked) now.blocked = s.blockedDOFs, to.free = freeWays(s), to.freeSpin = freeTurns(s);
+		solver->set(order[c.place], to);
 	}
 	if (motion) {
 		solver->moved();
@@ -229,40 +225,37 @@ void McaEngine::adoptChanges(Scene* scene)
 }
 
 /// What the engine holds of one body; `was` remembers it. False when a script has changed what is written over.
-bool McaEngine::writeBody(State& s, Same& was, size_t i) const
+bool McaEngine::writeBody(State& s, Same& was, const mca::AutomatonNow& now) const
 {
-	const Store& S    = solver->store;
 	auto*        m    = castTo<McaState>(&s);
 	bool         kept = s.se3.position == was.pos && s.vel == was.vel && s.angVel == was.angVel;
 	kept &= unlike(s.se3.orientation.coeffs(), was.ori.coeffs()) == 0 || (s.se3.orientation.coeffs() - was.ori.coeffs()).norm() < 1e-12;
 	if (m) kept &= !differs(m->plasticStrain, was.plasticStrain) && !differs(m->temperature, was.temperature);
-	was.pos = vector3(S.position.at(i), s.se3.position), was.vel = vector3(S.velocity.at(i));
-	if (S.angle[i] != was.angle) was.angle = S.angle[i], was.ori = Quaternionr(AngleAxisr(was.angle, Vector3r::UnitZ()));
-	was.angVel     = Vector3r(0, 0, S.omega[i]);
+	was.pos = place(now, s), was.vel = vector3(now.velocity), was.angVel = vector3(now.spin);
+	if (const Vector3r angle = vector3(now.angle); angle != was.angle) was.angle = angle, was.ori = orientationOf(angle, dimension);
 	s.se3.position = was.pos, s.se3.orientation = was.ori, s.vel = was.vel, s.angVel = was.angVel;
 	if (!m) return kept;
-	m->pressure = was.pressure = S.mean[i], m->volumeRatio = was.volumeRatio = S.J[i], m->plasticStrain = was.plasticStrain = S.eqps[i],
-	m->temperature = was.temperature = S.temperature[i];
-	m->stressZZ = was.stressZZ = S.szz[i], m->equivalentStress = was.equivalentStress = solver->equivalentStress(i);
-	m->links       = was.links       = __builtin_popcount(S.flags[i] & mca::linkBits);
-	m->brokenLinks = was.brokenLinks = __builtin_popcount((S.flags[i] >> mca::hadShift) & mca::linkBits) - was.links;
-	if (!S.heat.empty()) m->dissipated = S.heat[i];
+	m->pressure = was.pressure = now.pressure, m->volumeRatio = was.volumeRatio = now.volumeRatio;
+	m->plasticStrain = was.plasticStrain = now.plasticStrain, m->temperature = was.temperature = now.temperature;
+	m->stressZZ = was.stressZZ = now.stressZZ, m->equivalentStress = was.equivalentStress = now.equivalentStress;
+	m->links = was.links = now.links, m->brokenLinks = was.brokenLinks = now.brokenLinks;
+	if (now.dissipated) m->dissipated = *now.dissipated;
 	was.dissipated = m->dissipated;
 	return kept;
 }
 
 void McaEngine::writeBodies(Scene* scene)
 {
-	const Store& S      = solver->store;
-	Real         lowest = 0;
+	Real lowest = 0;
+	vector<Real> bulk; // modulus of each material [Pa]
+	for (const auto& m : solver->materials()) bulk.push_back(m.eos.rho0 * m.eos.c0 * m.eos.c0);
 	for (size_t q = 0; q < order.size(); q++) {
 		if (const size_t p = q + ahead; p < order.size() && same[p].state) soon(static_cast<const McaState&>(*same[p].state));
-		const auto&  b = bodies[q];
-		const size_t i = size_t(solver->indexOf(order[q]));
+		const auto& b = bodies[q];
 		if (!b || !b->state) continue; // erased since loading; told by the next step
-		if (!writeBody(*b->state, same[q], i) && stale) lost = b->id;
-		const auto& m = S.materials[size_t(S.species[size_t(S.speciesOf(i))].material)];
-		lowest        = std::min(lowest, S.P[i] / (m.eos.rho0 * m.eos.c0 * m.eos.c0));
+		const mca::AutomatonNow now = solver->now(order[q]);
+		if (!writeBody(*b->state, same[q], now) && stale) lost = b->id;
+		if (now.tension < 0) lowest = std::min(lowest, now.tension / bulk[size_t(solver->fixed(order[q]).material)]);
 	}
 	stale       = false;
 	looked      = true;
@@ -285,7 +278,7 @@ void McaEngine::bringUpToDate()
 {
 	locked([&] {
 		const auto scene = home.lock();
-		if (!solver || !stale || !scene || (solver->counters.steps == 0 && lastWritten < 0)) return;
+		if (!solver || !stale || !scene || (solver->counters().steps == 0 && lastWritten < 0)) return;
 		writeBodies(scene.get());
 	});
 }

@@ -9,8 +9,6 @@
 #include <sdk/arrayView.hpp>
 
 namespace yade {
-using mca::automata::Store;
-
 void McaEngine::writeEnergies(Scene* scene)
 {
 	const auto  a       = solver->account();
@@ -62,11 +60,13 @@ void McaEngine::preSave(McaEngine&)
 
 namespace {
 	/// What stands beside the solver's state must belong to it.
-	void checkLoaded(const mca::automata::Solver& solver, const vector<int>& order, const vector<Vector3r>& viscous)
+	void checkLoaded(const mca::Automata& solver, const vector<int>& order, const vector<Vector3r>& viscous, const vector<Real>& viscousZ)
 	{
 		solver.checkOrder(order);
+		bool good = viscousZ.size() == viscous.size();
+		for (Real v : viscousZ) good &= v >= 0 && std::isfinite(v);
 		for (const Vector3r& v : viscous)
-			if (!(v[0] >= 0 && v[0] < 2147483648. && v[0] == std::floor(v[0]) && v[1] >= 0 && v[2] >= 0 && std::isfinite(v[1] + v[2])))
+			if (!(good && v[0] >= 0 && v[0] < 2147483648. && v[0] == std::floor(v[0]) && v[1] >= 0 && v[2] >= 0 && std::isfinite(v[1] + v[2])))
 				throw mca::Error("McaEngine: the attribute 'viscous' in the file holds no body and coefficients of a viscous boundary; the "
 				                 "file is damaged or was edited.");
 	}
@@ -79,9 +79,10 @@ void McaEngine::postLoad(McaEngine&)
 	sdk::BlobReader in(state);
 	in.get(bytes);
 	in.end();
-	auto fresh = shared_ptr<mca::automata::Solver>(new mca::automata::Solver);
+	if (dimension != 2 && dimension != 3) throw mca::Error("McaEngine: dimension in the file is neither 2 nor 3; the file is damaged or was edited.");
+	shared_ptr<mca::Automata> fresh(mca::automataIn(dimension));
 	fresh->load(string(bytes.begin(), bytes.end()));
-	checkLoaded(*fresh, order, viscous);
+	checkLoaded(*fresh, order, viscous, viscousZ);
 	solver = fresh;
 	home.reset(), bodies.clear(), same.clear(), known.clear();
 	looked = true, stale = false;
@@ -109,50 +110,9 @@ py::object McaEngine::identifiers()
 	return sdk::arrayCopy(now.data(), { Py_ssize_t(now.size()) });
 }
 
-namespace {
-	int had(const Store& S, size_t i) { return __builtin_popcount((S.flags[i] >> mca::hadShift) & mca::linkBits); }
-	int have(const Store& S, size_t i) { return __builtin_popcount(S.flags[i] & mca::linkBits); }
-
-	/// One quantity of the automata at these places.
-	vector<Real> quantity(const mca::automata::Solver& solver, const vector<size_t>& places, const string& name, const string& call)
-	{
-		const Store& S    = solver.store;
-		const auto   each = [&](auto value) {
-                        vector<Real> v;
-                        v.reserve(places.size());
-                        for (size_t i : places)
-                                v.push_back(value(i));
-                        return v;
-		};
-		vector<Real> found;
-		bool         known = false;
-		string       list;
-		S.eachShown([&](const char* shown, const auto& from) {
-			list += string(shown) + ", ";
-			if (name == shown) known = true, found = each([&](size_t i) { return Real(from[i]); });
-		});
-		if (known) return found;
-		if (name == "equivalentStress") return each([&](size_t i) { return solver.equivalentStress(i); });
-		if (name == "links") return each([&](size_t i) { return Real(have(S, i)); });
-		if (name == "brokenLinks") return each([&](size_t i) { return Real(had(S, i) - have(S, i)); });
-		if (name == "material") return each([&](size_t i) { return Real(S.species[size_t(S.speciesOf(i))].material); });
-		throw mca::Error(
-			"McaEngine." + call + " = '" + name + "' is unknown; it must be one of " + list + "equivalentStress, links, brokenLinks, material.");
-	}
-} // namespace
-
-vector<size_t> McaEngine::places() const
-{
-	vector<size_t> v;
-	v.reserve(order.size());
-	for (int id : order)
-		v.push_back(size_t(solver->indexOf(id)));
-	return v;
-}
-
 py::object McaEngine::fieldByName(const string& name)
 {
-	const auto out = read("field", [&] { return quantity(*solver, places(), name, "field: name"); });
+	const auto out = read("field", [&] { return solver->quantity(order, name, "field: name"); });
 	return sdk::arrayCopy(out.data(), { Py_ssize_t(out.size()) });
 }
 
@@ -169,10 +129,9 @@ py::dict McaEngine::fieldsByName(py::object names)
 	vector<int>          ids;
 	vector<vector<Real>> values;
 	read("fields", [&] {
-		const auto at = places();
-		ids           = order;
+		ids = order;
 		for (const auto& name : asked)
-			values.push_back(name == "ids" ? vector<Real>() : quantity(*solver, at, name, "fields: names: name"));
+			values.push_back(name == "ids" ? vector<Real>() : solver->quantity(order, name, "fields: names: name"));
 	});
 	py::dict d;
 	for (size_t k = 0; k < asked.size(); k++)
@@ -191,37 +150,37 @@ py::dict McaEngine::energies()
 	d["halfStep"] = a.centre, d["total"] = a.total(), d["bookedError"] = a.bookedError();
 	d["bookedVolumetric"] = a.bookedVolumetric, d["bookedDeviatoric"] = a.bookedDeviatoric, d["bookedViscous"] = a.bookedViscous,
 	d["kineticStart"] = a.kineticStart;
-	putVector(d, "momentum", a.momentum), d["angularMomentum"] = a.angular, putVector(d, "impulse", a.impulse);
+	putVector(d, "momentum", a.momentum, dimension), putVector(d, "impulse", a.impulse, dimension);
+	if (dimension == 2) d["angularMomentum"] = a.angular[2];
+	else putVector(d, "angularMomentum", a.angular, dimension);
 	return d;
 }
 
 py::dict McaEngine::countersNow()
 {
 	struct Now {
-		mca::automata::Counters c;
-		long                    awake = 0, blocks = 0, contacts = 0;
-		bool                    any = false;
+		mca::AutomataCounters c;
+		mca::Automata::Work   work;
+		bool                  any = false;
 	};
 	const Now n = locked([&] {
 		Now now;
 		if (!solver) return now;
-		now.any = true, now.c = solver->counters, now.blocks = long(solver->store.blocks.size()), now.contacts = long(solver->contacts.size() / 2);
-		for (auto& b : solver->store.blocks)
-			now.awake += b.awake;
+		now.any = true, now.c = solver->counters(), now.work = solver->work();
 		return now;
 	});
 	py::dict d;
 	if (!n.any) return d;
 	d["steps"] = n.c.steps, d["searches"] = n.c.searches, d["localSearches"] = n.c.localSearches, d["sorts"] = n.c.sorts;
-	d["blockSteps"] = n.c.blockSteps, d["blocks"] = n.blocks, d["awake"] = n.awake;
-	d["brokenLinks"] = n.c.brokenLinks, d["clamped"] = n.c.clamped, d["deepest"] = std::min(n.c.deepest, 1.), d["contacts"] = n.contacts;
+	d["blockSteps"] = n.c.blockSteps, d["blocks"] = n.work.blocks, d["awake"] = n.work.awake;
+	d["brokenLinks"] = n.c.brokenLinks, d["clamped"] = n.c.clamped, d["deepest"] = std::min(n.c.deepest, 1.), d["contacts"] = n.work.contacts;
 	return d;
 }
 
 py::dict McaEngine::phases()
 {
-	mca::automata::Counters c;
-	const bool any = locked([&] { return solver ? (c = solver->counters, true) : false; });
+	mca::AutomataCounters c;
+	const bool any = locked([&] { return solver ? (c = solver->counters(), true) : false; });
 	py::dict   d;
 	if (!any) return d;
 	d["search"] = c.nsSearch, d["density"] = c.nsDensity, d["stress"] = c.nsStress, d["contact"] = c.nsContact, d["force"] = c.nsForce,
@@ -243,48 +202,68 @@ long McaEngine::automataCount() const
 	return locked([&] { return solver ? long(order.size()) : 0L; });
 }
 
-Vector2r McaEngine::momentum()
+py::object McaEngine::momentum()
 {
-	const auto a = read("momentum", [&] { return solver->account(); });
-	return vector3(a.momentum).head<2>();
+	const Vector3r m = vector3(read("momentum", [&] { return solver->account(); }).momentum);
+	return dimension == 2 ? py::object(Vector2r(m.head<2>())) : py::object(m);
 }
 
-void McaEngine::setViscous(const vector<int>& ids, const Vector2r& normal)
+namespace {
+	/// The axis of a normal of two components, or three; -1: it has no such number of them or does not lie along an axis.
+	int axisOf(const py::object& normal)
+	{
+		Vector3r n = Vector3r::Zero();
+		if (const py::extract<Vector2r> flat(normal); flat.check()) n.head<2>() = flat();
+		else if (const py::extract<Vector3r> full(normal); full.check()) n = full();
+		int axis = -1;
+		for (int c = 0; c < 3; c++) {
+			if (n[c] == 0) continue;
+			if (axis >= 0 || !(std::fabs(std::fabs(n[c]) - 1.) < 1e-9)) return -1;
+			axis = c;
+		}
+		return axis;
+	}
+	const Body& automatonOf(const Scene& scene, int id)
+	{
+		const auto refuse = [&](const string& what) { throw std::runtime_error("McaEngine.setViscous: ids: " + what); };
+		if (!scene.bodies->exists(id)) refuse("there is no body " + std::to_string(id) + "; each must be the id of an automaton.");
+		const auto& b = scene.bodies->body[size_t(id)];
+		if (!isAutomaton(b) || !b->state)
+			refuse("body " + std::to_string(id) + " is no automaton; it must have material McaMat, shape Sphere and a state.");
+		if (!b->state->se3.position.allFinite()) refuse("the position of body " + std::to_string(id) + " must be finite.");
+		return *b;
+	}
+	Real diameterOf(const Body& b) { return 2. * static_cast<const Sphere*>(b.shape.get())->radius; }
+} // namespace
+
+void McaEngine::setViscous(const vector<int>& ids, const py::object& normal)
 {
+	const int axis = axisOf(normal);
 	locked([&] {
 		const auto scene = Omega::instance().getScene();
 		settleIn(scene.get());
-		const bool alongX = std::fabs(normal[0]) > 0;
-		if (!(std::fabs(normal.norm() - 1.) < 1e-9 && (normal[0] == 0 || normal[1] == 0)))
-			throw std::runtime_error("McaEngine.setViscous: normal must be (1,0), (-1,0), (0,1) or (0,-1).");
-		// width of the boundary that one body stands for: extent of the set over the number of bodies in a line
-		Real lo = 1e300, hi = -1e300;
+		const int n = solver ? dimension : dimensionOf(*scene);
+		if (axis < 0 || axis >= n)
+			throw std::runtime_error(
+				string("McaEngine.setViscous: normal must be (1,0), (-1,0), (0,1) or (0,-1)")
+				+ (n == 2 ? "." : ", or, for these bodies in space, along one of the axes with three components, as (0,0,1)."));
+		// what one body stands for: extent of the set over the number of bodies in a line, in space area over their number
+		Vector3r lo = Vector3r::Constant(1e300), hi = -lo;
 		for (int id : ids) {
-			if (!scene->bodies->exists(id))
-				throw std::runtime_error(
-					"McaEngine.setViscous: ids: there is no body " + std::to_string(id) + "; each must be the id of an automaton.");
-			const auto& b = scene->bodies->body[size_t(id)];
-			if (!isAutomaton(b) || !b->state)
-				throw std::runtime_error(
-					"McaEngine.setViscous: ids: body " + std::to_string(id)
-					+ " is no automaton; it must have material McaMat, shape Sphere and a state.");
-			const Real t = b->state->se3.position[alongX ? 1 : 0];
-			if (!std::isfinite(t))
-				throw std::runtime_error("McaEngine.setViscous: ids: the position of body " + std::to_string(id) + " must be finite.");
-			lo = std::min(lo, t), hi = std::max(hi, t);
+			const Vector3r& x = automatonOf(*scene, id).state->se3.position;
+			lo = lo.cwiseMin(x), hi = hi.cwiseMax(x);
 		}
-		vector<Vector3r> added;
 		for (int id : ids) {
-			const auto& b     = scene->bodies->body[size_t(id)];
-			const auto  mat   = static_cast<const McaMat*>(b->material.get())->toMaterial();
-			const Real  d     = 2. * static_cast<Sphere*>(b->shape.get())->radius;
-			const Real  width = (hi - lo + d) / Real(ids.size());
-			const Real  bn = mat.eos.rho0 * mat.cP() * width, bt = mat.eos.rho0 * mat.cS() * width;
-			added.push_back(Vector3r(Real(id), alongX ? bn : bt, alongX ? bt : bn));
-		}
-		for (const auto& v : added) {
-			viscous.push_back(v);
-			if (solver && isMine(int(v[0]))) solver->setDamping(size_t(solver->indexOf(int(v[0]))), vec(v, 1));
+			const Body& b     = automatonOf(*scene, id);
+			const auto  mat   = static_cast<const McaMat*>(b.material.get())->toMaterial();
+			const Real  d     = diameterOf(b);
+			Real        share = 1. / Real(ids.size());
+			for (int c = 0; c < n; c++)
+				if (c != axis) share *= hi[c] - lo[c] + d;
+			Vector3r along = Vector3r::Constant(mat.eos.rho0 * mat.cS() * share);
+			along[axis]    = mat.eos.rho0 * mat.cP() * share;
+			viscous.push_back(Vector3r(Real(id), along[0], along[1])), viscousZ.push_back(n == 3 ? along[2] : 0.);
+			if (solver && isMine(id)) solver->setDamping(id, triple(along));
 		}
 	});
 }

@@ -3,6 +3,7 @@
 #include "McaEngine.hpp"
 #include "McaGridEngine.hpp"
 #include "McaRoles.hpp"
+#include "automata/solver.hpp"
 #include "interface/transfer.hpp"
 #include <deque>
 

@@ -3,6 +3,7 @@
 #include "McaBodies.hpp"
 #include "McaCast.hpp"
 #include "McaLaw.hpp"
+#include "automata/start.hpp"
 #include <atomic>
 #include <core/InteractionLoop.hpp>
 #include <kernels/automaton/outline.hpp>
@@ -73,12 +74,14 @@ void McaLaw::takeIn(Scene* scene)
 {
 	for (const Row& r : rows)
 		if (!r.l) checkUntouched(r);
-	const McaBodies   bodies(*scene, seed);
+	const McaBodies   bodies(*scene, seed, 2);
+	vector<automata::Automaton> all;
+	for (const auto& a : bodies.automata) all.push_back(automata::startOf(a));
 	automata::Options o;
 	o.volumeRule = rule(), o.contacts = false, o.linkFactor = linkFactor;
 	vector<automata::Automaton>  known;
 	vector<automata::LinkRecord> records;
-	for (const auto& a : bodies.automata) {
+	for (const auto& a : all) {
 		const auto* l = rows[size_t(place[size_t(a.id)])].l;
 		if (!l) continue;
 		known.push_back(a);
@@ -89,12 +92,12 @@ void McaLaw::takeIn(Scene* scene)
 	}
 	automata::Solver solver;
 	if (known.empty()) {
-		solver.build(bodies.automata, bodies.materials, o);
+		solver.build(all, bodies.materials, o);
 		forget();
 		clearStale(*scene);
 	} else {
 		const auto old = automata::Solver::knowing(known, bodies.materials, records);
-		solver.build(bodies.automata, bodies.materials, o, &old);
+		solver.build(all, bodies.materials, o, &old);
 	}
 	linkFactorUsed           = linkFactor;
 	vector<int>            newcomers;

@@ -63,6 +63,9 @@ public:
 		((int, triangles, 0, , "of the six triangles of the packing around it, those that it stands for, 1 to 6, where its body shall end through "
 		    "the centres of its outermost automata (5g); packings.addBodies() sets it for rim='triangles'. 0: what its mass says. Read when "
 		    "automata are taken in, which is refused when neighbours or mass make another number; a change later is refused"))
+		((int, mirrors, 0, , "planes of symmetry on which it lies: 1, 2, 4 for one with its normal along x, y, z, summed; beyond it the body goes on "
+		    "as its image. In space only; packings.addBodies() sets it for fcc(mirror=...), with the mass of the part of the cell on this side and "
+		    "blockedDOFs. Read when automata are taken in; a change later is refused"))
 		((int, links, 0, , "links that hold [-]; output"))
 		((int, brokenLinks, 0, , "links that broke [-]; output"))
 		((shared_ptr<McaLawState>, law, , Attr::hidden, "what :yref:`McaLaw` keeps of the automaton; empty with McaEngine"))

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Vectors of the solvers and those of YADE, which have three components always.
 #pragma once
+#include <automata/automata.hpp>
 #include <core/State.hpp>
 #include <kernels/vector.hpp>
 #include <lib/base/Math.hpp>
@@ -24,10 +25,35 @@ inline Vector3r vector3(const mca::Vec<Real>& v, Vector3r rest = Vector3r::Zero(
 }
 /// State::blockedDOFs of a translation
 inline unsigned translation(int c) { return unsigned(State::DOF_X) << c; }
-/// nameX, nameY, ...: the components for scripts.
-template <class Dict> void putVector(Dict& to, const char* name, const mca::Vec<Real>& v)
+inline mca::Triple triple(const Vector3r& v) { return { v[0], v[1], v[2] }; }
+inline Vector3r    vector3(const mca::Triple& t) { return Vector3r(t[0], t[1], t[2]); }
+inline mca::Ways   freeWays(const State& s)
 {
-	for (int c = 0; c < mca::dim; c++)
+	return { !(s.blockedDOFs & State::DOF_X), !(s.blockedDOFs & State::DOF_Y), !(s.blockedDOFs & State::DOF_Z) };
+}
+inline mca::Ways freeTurns(const State& s)
+{
+	return { !(s.blockedDOFs & State::DOF_RX), !(s.blockedDOFs & State::DOF_RY), !(s.blockedDOFs & State::DOF_RZ) };
+}
+/// Angle about each axis of an orientation [rad]; in the plane about z alone.
+inline Vector3r angleOf(const Quaternionr& q, int dimension)
+{
+	if (dimension == 2) return Vector3r(0, 0, 2. * std::atan2(q.z(), q.w()));
+	const Vector3r v = q.vec();
+	const Real     s = v.norm();
+	return s > 0 ? Vector3r(v * (2. * std::atan2(s, q.w()) / s)) : Vector3r(Vector3r::Zero());
+}
+/// Orientation of such an angle. Turns about changing axes do not add up to one; nothing but the picture follows from it.
+inline Quaternionr orientationOf(const Vector3r& angle, int dimension)
+{
+	const Real a = angle.norm();
+	if (dimension == 2 || a == 0) return Quaternionr(AngleAxisr(angle[2], Vector3r::UnitZ()));
+	return Quaternionr(AngleAxisr(a, Vector3r(angle / a)));
+}
+/// nameX, nameY, ...: the components for scripts.
+template <class Dict, class Vector> void putVector(Dict& to, const char* name, const Vector& v, int components = mca::dim)
+{
+	for (int c = 0; c < components; c++)
 		to[std::string(name) + char('X' + c)] = v[c];
 }
 } // namespace yade

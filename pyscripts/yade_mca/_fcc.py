@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ._arguments import array, number
+from ._arguments import array, number, oneOf
 
 
 def _error():
@@ -29,6 +29,7 @@ class SpacePacking:
 	spacing: float  #: d [m]
 	orientation: np.ndarray  #: (3, 3) rows: the axes of the cubic cell in x, y, z
 	lattice: np.ndarray  #: (N, 3) int: place in half edges of the cubic cell, with an even sum
+	mirrors: np.ndarray  #: (N,) int: planes of symmetry on which the automaton lies, 1, 2, 4 for one with its normal along x, y, z, summed
 
 	def __len__(self):
 		return len(self.positions)
@@ -106,6 +107,14 @@ class Box:
 	def aabb(self):
 		return self.low, self.high
 
+	def _faces(self, points, tolerance):
+		"""Number of its faces within `tolerance` [m] of which each of the points (N, 3) lies, int (N,)."""
+		return sum((abs(_points(points) - _point(name, corner)) < tolerance).sum(axis=1) for name, corner in (('low', self.low), ('high', self.high)))
+
+	def _hasFace(self, axis, at, tolerance):
+		"""Whether a face lies in the plane across this axis (0, 1, 2) at this coordinate [m]."""
+		return bool(min(abs(self.low[axis] - at), abs(self.high[axis] - at)) < tolerance)
+
 	def inside(self, points):
 		"""bool (N,) of points (N, 3): within. Raises PackingError."""
 		low, high = _point('low', self.low), _point('high', self.high)
@@ -129,6 +138,18 @@ class Cylinder:
 		t = (b - a) / np.linalg.norm(b - a)
 		reach = self.radius * np.sqrt(np.maximum(1 - t**2, 0))
 		return np.minimum(a, b) - reach, np.maximum(a, b) + reach
+
+	def _faces(self, points, tolerance):
+		"""Number of its ends within `tolerance` [m] of which each of the points (N, 3) lies, int (N,)."""
+		a, b = _point('start', self.start), _point('end', self.end)
+		along, length = (_points(points) - a) @ (b - a) / np.linalg.norm(b - a), np.linalg.norm(b - a)
+		return (abs(along) < tolerance).astype(int) + (abs(along - length) < tolerance)
+
+	def _hasFace(self, axis, at, tolerance):
+		"""Whether an end lies in the plane across this axis (0, 1, 2) at this coordinate [m]."""
+		a, b = _point('start', self.start), _point('end', self.end)
+		upright = abs(b - a)[axis] > (1 - 1e-9) * np.linalg.norm(b - a)
+		return bool(upright and min(abs(a[axis] - at), abs(b[axis] - at)) < tolerance)
 
 	def inside(self, points):
 		"""bool (N,) of points (N, 3): within. Raises PackingError."""
@@ -163,12 +184,8 @@ def isInside(shape, points):
 	return np.array([bool(shape(tuple(p), 0.)) for p in points.tolist()], bool)
 
 
-def make(spacing, shape, orientation, origin, error):
-	d = number('spacing', spacing, error, above=0, unit=' m')
-	if not (hasattr(shape, 'aabb') and (hasattr(shape, 'inside') or callable(shape))):
-		raise error('shape must be packings.Box, Cylinder, Ball or a predicate of yade.pack; got %r' % (shape, ))
-	axes, corners = axesOf(orientation, error), boundsOf(shape, error)
-	at = corners.mean(axis=0) if origin is None else array('origin', origin, error, (3, ))
+def _places(d, corners, at, axes, error):
+	"""Places of the packing, and their positions, that cover the box."""
 	edge = d / math.sqrt(2)  # half of the cubic cell's
 	all8 = np.array([(x, y, z) for x in corners[:, 0] for y in corners[:, 1] for z in corners[:, 2]])
 	local = (all8 - at) @ axes.T / edge
@@ -177,7 +194,42 @@ def make(spacing, shape, orientation, origin, error):
 		raise error('spacing %g m gives more than 3e8 places in the box from %s to %s m; is the unit right?' % (d, *corners.tolist()))
 	places = np.stack(np.meshgrid(*(np.arange(a, b + 1) for a, b in zip(low, high)), indexing='ij'), axis=-1).reshape(-1, 3)
 	places = places[places.sum(axis=1) % 2 == 0]
-	positions = at + edge * places @ axes
+	return places, at + edge * places @ axes
+
+
+def _checkMirror(mirror, axes, error):
+	"""Numbers of the axes. The packing must be its own image there."""
+	if not isinstance(mirror, str) or len(set(mirror)) != len(mirror) or not set(mirror) <= set('xyz'):
+		raise error("mirror must name axes, as 'x' or 'xz', or be ''; got %r" % (mirror, ))
+	found = ['xyz'.index(c) for c in mirror]
+	for c in found:
+		if not np.allclose(np.sort(abs(axes[:, c])), (0, 0, 1), atol=1e-9):  # normal of the plane in the cubic cell
+			raise error("mirror: an edge of the cubic cell must point along %s, else automata on both sides of the plane are linked; turn the packing" % 'xyz'[c])
+	return found
+
+
+def make(spacing, shape, orientation, origin, mirror, rim, error):
+	d = number('spacing', spacing, error, above=0, unit=' m')
+	if not (hasattr(shape, 'aabb') and (hasattr(shape, 'inside') or callable(shape))):
+		raise error('shape must be packings.Box, Cylinder, Ball or a predicate of yade.pack; got %r' % (shape, ))
+	axes, corners = axesOf(orientation, error), boundsOf(shape, error)
+	planes = _checkMirror(mirror, axes, error)
+	if oneOf('rim', rim, ('full', 'faces'), error) == 'faces' and not isinstance(shape, (Box, Cylinder)):
+		raise error("rim='faces' needs a Box or a Cylinder, whose faces are known; got %r" % (shape, ))
+	if origin is not None: at = array('origin', origin, error, (3, ))
+	elif rim == 'full': at = corners.mean(axis=0)
+	else: at = _point('low', shape.low) if isinstance(shape, Box) else _point('start', shape.start)
+	places, positions = _places(d, corners, at, axes, error)
 	keep = isInside(shape, positions)
+	for c in planes: keep &= positions[:, c] > at[c] - 1e-6 * d
 	if not keep.any(): raise error('no automaton of spacing %g m fits the shape from %s to %s m: take a smaller spacing' % (d, *corners.tolist()))
-	return SpacePacking(positions[keep], np.ones(int(keep.sum())), d, axes, places[keep])
+	positions, places = positions[keep], places[keep]
+	weight, mirrors = np.ones(len(positions)), np.zeros(len(positions), int)
+	for c in planes:
+		on = abs(positions[:, c] - at[c]) < 1e-6 * d
+		weight[on] *= 0.5
+		mirrors[on] |= 1 << c
+	if rim == 'faces':
+		twice = sum(mirrors >> c & 1 for c in planes if shape._hasFace(c, at[c], 1e-6 * d))  # the plane of symmetry is a face
+		weight *= 0.5**(shape._faces(positions, 1e-6 * d) - twice)
+	return SpacePacking(positions, weight, d, axes, places, mirrors)

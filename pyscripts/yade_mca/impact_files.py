@@ -18,7 +18,8 @@ PRESSURE = dict(label='pressure', unit='Pa', vmin=-6e9, vmax=6e9, cmap='RdBu_r')
 def writeParaview(still, folder, name):
 	"""Writes automata, grid blocks and interface of an impact_output.Still; returns {part number: path} for a Collection."""
 	folder = Path(folder)
-	files = {0: vtk_output.writeAutomata(folder / ('automata_%s.vtp' % name), still.positions, still.fields, still.radius, still.time)}
+	a = still.space or dict(positions=still.positions, fields=still.fields, radius=still.radius)
+	files = {0: vtk_output.writeAutomata(folder / ('automata_%s.vtp' % name), a['positions'], a['fields'], a['radius'], still.time)}
 	for k, (block, (nodes, cells, velocities)) in enumerate(sorted(still.grids.items())):
 		files[1 + k] = vtk_output.writeGrid(folder / ('grid_%s_%s.vts' % (block, name)), nodes, cells, velocities, still.time)
 	for k, row in enumerate(still.rows):
@@ -90,7 +91,7 @@ def historyPicture(path, record, facts, impactEnergy, title=''):
 	panels = [
 	        ('velocity', 'm/s', {'tail': r['tailVelocity'], 'all rod material': r['allVelocity']}),
 	        ('loss', '', {'dl/l0 by mass': r['lengthLoss'], 'dl/l0 as length': r['lengthLossGeometric'], 'dU/U0 of the tail': r['velocityLossTail'], 'dU/U0 of all': r['velocityLossAll']}),
-	        ('energy', 'J/m', dict({'sum': r['total'], 'kinetic': r['kinetic'], 'plastic work': r['plastic'], 'stored': r['stored'], 'viscous': r['viscous'], 'friction': r['friction']},
+	        ('energy', 'J' if facts.get('dimension') == 3 else 'J/m', dict({'sum': r['total'], 'kinetic': r['kinetic'], 'plastic work': r['plastic'], 'stored': r['stored'], 'viscous': r['viscous'], 'friction': r['friction']},
 	                               **({'grid, internal': r['grid']} if facts['mode'] == 'coupled' else {}))),
 	        ('sum / impact energy - 1', '%', {'independent sum': 100 * (r['total'] - r['total'][0]) / e0}),
 	]

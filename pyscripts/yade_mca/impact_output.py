@@ -29,6 +29,7 @@ class Still:
 	facts: dict  #: of the scene
 	bounds: tuple  #: what all pictures of the run show (x0, y0, x1, y1) [m]
 	text: str = ''  #: above a frame of the animation
+	space: dict = None  #: in space, where the rest is the section z = 0: positions (N, 3) [m], radius (N,) [m] and fields of all automata
 
 
 def automataFields(s):
@@ -37,6 +38,17 @@ def automataFields(s):
 	fields = {'velocity [m/s]': np.stack((f['vx'], f['vy']), axis=1), 'pressure [Pa]': f['pressure'], 'equivalentStress [Pa]': f['equivalentStress'],
 	          'plasticStrain': f['plasticStrain'], 'temperature [K]': f['temperature'], 'links': f['links'], 'rod': np.isin(f['ids'], s.ids['rod']).astype(np.uint8)}
 	return f['ids'], np.stack((f['x'], f['y']), axis=1), 0.5 * f['diameter'], fields
+
+
+def _section(s, ids, positions, radius, fields):
+	"""A scene in space: (positions, radius, fields) of the automata that the plane z = 0 cuts, a quarter with its image, and Still.space."""
+	z = s.automata.fields(['z', 'vz'])
+	space = dict(positions=np.column_stack((positions, z['z'])), radius=radius, fields=dict(fields, **{'velocity [m/s]': np.column_stack((fields['velocity [m/s]'], z['vz']))}))
+	cut = abs(z['z']) < radius
+	positions, radius, fields = positions[cut], radius[cut], {k: v[cut] for k, v in fields.items()}
+	if s.facts['parts'] == 1: return positions, radius, fields, space
+	image, turned = positions * (-1, 1), dict(fields, **{'velocity [m/s]': fields['velocity [m/s]'] * (-1, 1)})
+	return np.concatenate((positions, image)), np.tile(radius, 2), {k: np.concatenate((v, turned[k])) for k, v in fields.items()}, space
 
 
 def gridFields(s, block):
@@ -59,6 +71,9 @@ def bounds(s):
 def still(s, time, text=''):
 	"""The scene as it stands, a Still; time [s]."""
 	ids, positions, radius, fields = automataFields(s)
+	if s.facts.get('dimension') == 3:
+		positions, radius, fields, space = _section(s, ids, positions, radius, fields)
+		return Still(time, positions, radius, fields, {}, [], s.facts, bounds(s), text, space)
 	grids, rows = {name: gridFields(s, k) for name, k in s.blocks.items()}, [np.searchsorted(ids, np.array(c.rowIds)) for c in s.couplers]
 	return Still(time, positions, radius, fields, grids, rows, s.facts, bounds(s), text)
 

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Packings of automata, in plane strain and in space, and the YADE bodies made of those in plane strain.
+"""Packings of automata, in plane strain and in space, and the YADE bodies made of them.
 
     >>> from yade_mca import packings
     >>> plate = packings.hexagonal(1e-3, packings.Rectangle((0, 0), (80e-3, 25e-3)), angle=0.5 * math.pi)
     >>> ids = packings.addBodies(plate, '4340', velocity=(0, 0))
 
-A packing is numbers only (numpy arrays); addBodies() and resetStates() alone need YADE. All lengths in [m], areas and masses per unit thickness.
+A packing is numbers only (numpy arrays); addBodies() and resetStates() alone need YADE. All lengths in [m]; in plane strain areas, and masses per unit
+thickness; in space volumes.
 """
 import math
 import reprlib
@@ -13,7 +14,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ._arguments import array, number, oneOf, whole
+from ._arguments import array, number, oneOf
+from ._bodies import addBodies, resetStates
 from ._fcc import Ball, Box, Cylinder, SpacePacking, make
 from .outlines import Polygon, Predicate, Rectangle, asOutline, disc
 
@@ -286,17 +288,23 @@ def _giveAway(table, lattice, positions, weight, keep):
 	weight[lost] = 0
 
 
-def fcc(spacing, shape, orientation=None, origin=None):
-	"""Face-centred cubic packing of `spacing` [m]: a SpacePacking of the automata whose centres are in `shape`, all of weight 1.
+def fcc(spacing, shape, orientation=None, origin=None, mirror='', rim='full'):
+	"""Face-centred cubic packing of `spacing` [m]: a SpacePacking of the automata whose centres are in `shape`.
 
 	shape        Box, Cylinder, Ball, or a predicate of yade.pack
 	orientation  how the packing stands: None, the edges of the cubic cell along x, y, z; ((h, k, l), (h, k, l)), the directions of the packing that
 	             point along x and y, at right angles to each other; or a rotation (3, 3) whose rows are the axes of the cubic cell in x, y, z
-	origin       where an automaton stands, or would stand (x, y, z) [m]; default: the middle of the shape
-	The solver finds the packing whatever its orientation. It takes them in C++ so far; McaEngine holds bodies in plane strain only.
+	origin       where an automaton stands, or would stand (x, y, z) [m]; default: the middle of the shape, with rim='faces' the lower corner of a Box, the
+	             start of a Cylinder
+	mirror       planes of symmetry through the origin: 'x' makes only the half above x = origin x, 'xz' the quarter. Automata on the plane stand for half of
+	             their cell, and the engine lets the body go on beyond it as its image: a half or quarter gives what the whole would (formulation, (S9)). An
+	             edge of the cubic cell must point along the normal
+	rim          'full': whole automata, of weight 1. 'faces': those whose centre is on a face of a Box, or on an end of a Cylinder, stand for the part of
+	             their cell inside, so that the body ends there at once and a bar has its modulus (S8); give the shape sizes that put them there
+	The solver finds the packing whatever its orientation.
 	Raises PackingError for an argument that is out of range and when no automaton fits.
 	"""
-	return make(spacing, shape, orientation, origin, PackingError)
+	return make(spacing, shape, orientation, origin, mirror, rim, PackingError)
 
 
 _REFUSED = {
@@ -316,92 +324,3 @@ def create(name, spacing, outline, **options):
 	if name != 'hexagonal':
 		raise PackingError('unknown packing name %r: in plane strain it must be \'hexagonal\'' % (name, ))
 	return hexagonal(spacing, outline, **options)
-
-
-def _material(material):
-	"""A yade material from a McaMat, a name or a record of the library, appended to O.materials when it is not there yet."""
-	from ._yade import scene
-	from .materials import Material, mcaMat
-	m = mcaMat(material) if isinstance(material, (str, Material)) else material
-	if not (hasattr(m, 'newAssocState') and hasattr(m, 'density')):
-		raise PackingError('material must be a McaMat, or a name or record of the library (materials.names()); got %r' % (m, ))
-	if getattr(m, 'id', 0) < 0:
-		scene().materials.append(m)
-	return m
-
-
-def addBodies(packing, material, velocity=(0., 0.), angularVelocity=0., mask=1, fixed=False, color=None):
-	"""One YADE body (a Sphere of radius d/2 at z = 0) per automaton; returns their ids, a list of int in the packing's order.
-
-	material     McaMat, or a name or record of the library; needs density [kg/m3]
-	velocity     (2,) or (N, 2) [m/s]
-	angularVelocity  about z, of each automaton [rad/s]
-	mask         Body.mask (int, its 32 bits), by which other engines tell groups of bodies apart
-	fixed        True: all degrees of freedom are blocked, so that the bodies keep the velocity they have; else those out of the plane, 'zXY'
-	color        (r, g, b) in 0 ... 1, default grey
-	Mass is weight * density * Omega0 and the moment of inertia m R^2/2 (disc), both per 1 m of thickness. With rim='triangles' state.triangles says for how
-	many each stands: an engine that finds another number, or another mass, refuses the body instead of giving it another surface.
-	Raises PackingError for an argument that is not finite, out of range or of the wrong shape, before there is a body.
-	"""
-	from ._yade import scene, yadeClass
-	if isinstance(packing, SpacePacking):
-		raise PackingError('packing is one of space (fcc); McaEngine holds bodies in plane strain only: take hexagonal(). The solver of space is there in C++')
-	if not isinstance(packing, Packing):
-		raise PackingError('packing must be a Packing, as hexagonal() makes one; got %r' % (packing, ))
-	velocity = array('velocity', velocity, PackingError, ((2, ), (len(packing), 2)))
-	angularVelocity = number('angularVelocity', angularVelocity, PackingError, unit=' rad/s')
-	mask = whole('mask', mask, PackingError, -2**31, 2**31 - 1)
-	color = (0.6, 0.6, 0.6) if color is None else tuple(array('color', color, PackingError, (3, )).tolist())
-	if not all(0 <= c <= 1 for c in color):
-		raise PackingError('color must be (r, g, b), each from 0 to 1; got %r' % (color, ))
-	m = _material(material)
-	if not (m.density > 0 and math.isfinite(m.density)):
-		raise PackingError('density of the material must be above 0; it is %r' % m.density)
-	Body, Sphere = yadeClass('Body'), yadeClass('Sphere')
-	radius = packing.radius
-	masses = packing.masses(m.density)
-	triangles = np.round(6 * packing.weight).astype(int) if packing.rim == 'triangles' else np.zeros(len(packing), int)
-	rows = zip(packing.positions.tolist(), np.broadcast_to(velocity, (len(packing), 2)).tolist(), masses.tolist(), (0.5 * radius**2 * masses).tolist(),
-	           triangles.tolist())
-	blocked, spin = 'xyzXYZ' if fixed else 'zXY', (0., 0., angularVelocity)
-	bodies = []
-	for (x, y), (vx, vy), mass, inertia, around in rows:
-		b = Body()
-		b.shape = Sphere(radius=radius, color=color)
-		b.material = m
-		s = m.newAssocState()
-		s.pos = s.refPos = (x, y, 0.)
-		s.vel, s.angVel = (vx, vy, 0.), spin
-		s.mass, s.inertia = mass, (inertia, inertia, inertia)
-		if around: s.triangles = around
-		s.blockedDOFs = blocked
-		b.state = s
-		b.mask = mask
-		bodies.append(b)
-	return scene().bodies.append(bodies)
-
-
-def resetStates(ids):
-	"""Gives automata the state of rest: a fresh McaState with the position, velocity, orientation, spin, mass, inertia, blockedDOFs and strength of the old one.
-
-	ids: of bodies in O.bodies with material McaMat and shape Sphere, whole numbers. For bodies that another engine has moved: links are made anew from where
-	they are now (the engine refuses a packing that is too distorted for it), pressure, stresses, plastic strain and heat are gone, the temperature is the
-	material's referenceTemperature. An engine takes over bodies in this state when it gathers them for the first time; the one that has moved them refuses
-	the next step, so put a new one into O.engines. state.triangles is 0: where a body ends is seen by the masses, as far as it is still whole.
-	Raises PackingError for an id that is no automaton, before any state is changed.
-	"""
-	from ._yade import scene, yadeClass
-	o, State, Mat, Sphere = scene(), yadeClass('McaState'), yadeClass('McaMat'), yadeClass('Sphere')
-	if not isinstance(ids, (list, tuple, range)) and not (isinstance(ids, np.ndarray) and ids.ndim == 1):
-		raise PackingError('ids must be a row of whole numbers, each the id of an automaton in O.bodies; got %s' % reprlib.repr(ids))
-	bodies = []
-	for i in [whole('each of ids', i, PackingError) for i in ids]:
-		b = o.bodies[i] if i < len(o.bodies) else None
-		if b is None or not isinstance(b.material, Mat) or not isinstance(b.shape, Sphere) or not isinstance(b.state, State):
-			raise PackingError('ids: body %d must be an automaton in O.bodies (material McaMat, shape Sphere, state McaState)' % i)
-		bodies.append(b)
-	for b in bodies:
-		old, new = b.state, b.material.newAssocState()
-		for name in ('pos', 'ori', 'vel', 'angVel', 'angMom', 'mass', 'inertia', 'refPos', 'refOri', 'blockedDOFs', 'isDamped', 'densityScaling', 'strength'):
-			setattr(new, name, getattr(old, name))
-		b.state = new

@@ -61,9 +61,10 @@ class Scene:
 		return self.ids[part]
 
 	def block(self, ids, dofs):
-		"""Blocks degrees of freedom ('x', 'y', 'Z') of bodies for good; those out of the plane are always blocked."""
+		"""Blocks degrees of freedom ('x', 'y', 'Z', in space also 'z', 'X', 'Y') of bodies for good, beside those that are blocked already."""
 		for i in np.asarray(ids).tolist():
-			omega().bodies[i].state.blockedDOFs = 'zXY' + dofs
+			state = omega().bodies[i].state
+			state.blockedDOFs = ''.join(sorted(set(state.blockedDOFs + dofs)))
 
 
 def start(engineOptions=None):

@@ -12,16 +12,18 @@ import math
 
 import numpy as np
 
-from . import measure, packings
+from . import measure
 from ._yade import yadeClass
 from ._arguments import array
+from ._bodies import material as asMaterial
 from .packings import Rectangle, hexagonal
+from .round_bodies import rodAndPlate, roundBar
 from .scene import PITCH, PLATE, ROD, Scene, SceneError, affordable, oneOf, positive, start, subsonic, within
 from .tied_plate import gradedLines, leaning, plateGeometry, tiedPlate
 from .uniaxial import addStrip, driveEnd, middle, plateImpact, profile, strip
 
 __all__ = ['Scene', 'SceneError', 'addStrip', 'bar', 'checkImpact', 'driveEnd', 'gradedLines', 'law2Engines', 'middle', 'penetration', 'plateImpact', 'profile',
-           'rodLength', 'rodMeasure', 'start', 'strip', 'taylorBar', 'tiedPlate', 'touchDown']
+           'rodLength', 'rodMeasure', 'roundBar', 'start', 'strip', 'taylorBar', 'tiedPlate', 'touchDown']
 
 SPALL = (3.8e9, 3.0e9)  #: tensile strength of rod and plate [Pa], see penetration()
 STEEPEST = math.radians(75)  #: largest obliquity of the rod [rad]
@@ -118,7 +120,7 @@ def taylorBar(material, length, diameter, spacing, speed, friction=0., anvil='sm
 		place = dict(origin=((0.25 - 0.5 * max(round(diameter / spacing), 1)) * spacing if rim == 'triangles' else 0., 0.))
 	body = hexagonal(spacing, outline, rim=rim, **place)
 	s = start(engineOptions)
-	m = packings._material(material)
+	m = asMaterial(material)
 	s.facts.update(speed=speed, length=length, diameter=diameter, anvil=anvil)
 	if rough:
 		m.frictionAngle = friction
@@ -153,25 +155,26 @@ def _rodPacking(s, spacing, length, diameter, angle, obliquity, direction, thick
 	return touchDown(p, plate, direction)
 
 
-def checkImpact(thickness, spacing, speed, mode, rodLength, rodDiameter, rod, plate, automataWidth, plateWidth, angle=0., obliquity=0.):
+def checkImpact(thickness, spacing, speed, mode, rodLength, rodDiameter, rod, plate, automataWidth, plateWidth, angle=0., obliquity=0., dimension=2):
 	"""Raises SceneError when penetration() cannot build a scene of these sizes; makes nothing."""
+	if not (isinstance(dimension, int) and dimension in (2, 3)): raise SceneError('dimension must be 2 or 3; got %r' % (dimension, ))
 	positive(thickness=thickness, spacing=spacing, speed=speed, rodLength=rodLength, rodDiameter=rodDiameter, automataWidth=automataWidth)
 	if spacing > 0.5 * min(rodDiameter, thickness):
 		raise SceneError('spacing %g m is above half the rod diameter or plate thickness (%g, %g m)' % (spacing, rodDiameter, thickness))
 	if rodLength < 2 * spacing:
 		raise SceneError('rodLength %g m is below two spacings of %g m' % (rodLength, spacing))
 	within('obliquity', obliquity, -STEEPEST, STEEPEST, 'rad')
-	plateGeometry(thickness, spacing, automataWidth, plateWidth, mode, angle)
+	if dimension == 2: plateGeometry(thickness, spacing, automataWidth, plateWidth, mode, angle)
 	need = thickness * math.tan(abs(obliquity)) + rodDiameter / math.cos(obliquity) + 2 * spacing
 	if automataWidth < need:
 		raise SceneError('automataWidth %g m is too narrow: at an obliquity of %.3g degrees the rod crosses the plate within %.3g m' % (automataWidth, math.degrees(obliquity), need))
-	affordable(spacing, (thickness, automataWidth), (rodLength, rodDiameter))
+	if dimension == 2: affordable(spacing, (thickness, automataWidth), (rodLength, rodDiameter))
 	subsonic('speed', speed, rod, plate)
 
 
 def penetration(thickness=25e-3, spacing=1e-3, speed=1520., mode='coupled', ends=None, rodLength=100e-3, rodDiameter=10e-3, rod='WHA_JC', plate='4340',
                 automataWidth=80e-3, plateWidth=120e-3, fractureStrain=1.0, spallStrength=SPALL, strengthSpread=0.05, friction=None, eos='shockAdiabat',
-                yieldModel=None, viscosity=1., seed=1, dtFactor=0.5, account=True, angle=0., obliquity=0., engineOptions=None):
+                yieldModel=None, viscosity=1., seed=1, dtFactor=0.5, account=True, angle=0., obliquity=0., dimension=2, quarter=True, engineOptions=None):
 	"""A rod falls on the upper face of a plate: the main job. Parts 'rod', 'plate'; impact direction (sin obliquity, -cos obliquity).
 
 	thickness [m], spacing [m], speed [m/s]; mode and ends as in tiedPlate() (ends None: 'fixed' when coupled, 'viscous' with automata only)
@@ -187,10 +190,16 @@ def penetration(thickness=25e-3, spacing=1e-3, speed=1520., mode='coupled', ends
 	angle          by which the packings are turned against the normal of the plate and the axis of the rod [rad]; see tiedPlate()
 	obliquity      between the flight of the rod, which is its axis, and the normal of the plate [rad], up to 75 degrees either way; the axis goes through
 	               the middle of the thickness at x = 0
+	dimension      3: a round rod and a square plate of automataWidth in space; mode='mca', no angle, no obliquity; s.facts['parts'] is what masses, momenta
+	               and energies of the model are to be multiplied with, 4 or 1
+	quarter        in space: the quarter x, z >= 0 with planes of symmetry
 	Time 0 is the moment of contact: the rod's foremost automata just touch the plate. Raises SceneError (a ValueError) for values out of range.
 	"""
 	from .materials import Material, get, mcaMat
-	checkImpact(thickness, spacing, speed, mode, rodLength, rodDiameter, rod, plate, automataWidth, plateWidth, angle, obliquity)
+	if not isinstance(quarter, bool): raise SceneError('quarter must be True or False; got %r' % (quarter, ))
+	checkImpact(thickness, spacing, speed, mode, rodLength, rodDiameter, rod, plate, automataWidth, plateWidth, angle, obliquity, dimension)
+	if dimension == 3 and (mode != 'mca' or angle or obliquity):
+		raise SceneError("dimension=3 needs mode='mca' (grids are in plane strain), angle=0 and obliquity=0; got %r, %r and %r" % (mode, angle, obliquity))
 	within('strengthSpread', strengthSpread, 0., 1.)
 	within('viscosity', viscosity, 0., 100.)
 	within('seed', seed, 0, 2**31 - 1)
@@ -215,13 +224,19 @@ def penetration(thickness=25e-3, spacing=1e-3, speed=1520., mode='coupled', ends
 	if engineOptions is not None and not isinstance(engineOptions, dict): start(engineOptions)  # refuses it
 	options = dict(dict(seed=seed, account=account), **(engineOptions or {}))
 	dtFactor = options.get('dtFactor', dtFactor)
-	s = tiedPlate(plateMat, thickness, spacing, automataWidth, plateWidth, mode, ends, dtFactor=dtFactor, angle=angle, engineOptions=options)
 	direction = (math.sin(obliquity), -math.cos(obliquity))
-	body = _rodPacking(s, spacing, rodLength, rodDiameter, angle, obliquity, direction, thickness)
-	s.add('rod', body, rodMat, velocity=(speed * direction[0], speed * direction[1]), mask=ROD, color=(0.8, 0.5, 0.2))
+	if dimension == 3:
+		s = start(options)
+		s.automata.dtFactor = dtFactor
+		body = rodAndPlate(s, rodMat, plateMat, spacing, thickness, automataWidth, rodLength, rodDiameter, speed, ends, quarter)
+		s.facts.update(thickness=thickness, spacing=spacing, automataWidth=automataWidth, mode=mode, ends=ends, plate=plateMat.label, angle=angle, dimension=3, parts=4 if quarter else 1)
+	else:
+		s = tiedPlate(plateMat, thickness, spacing, automataWidth, plateWidth, mode, ends, dtFactor=dtFactor, angle=angle, engineOptions=options)
+		body = _rodPacking(s, spacing, rodLength, rodDiameter, angle, obliquity, direction, thickness)
+		s.add('rod', body, rodMat, velocity=(speed * direction[0], speed * direction[1]), mask=ROD, color=(0.8, 0.5, 0.2))
 	s.facts.update(speed=speed, rodLength=rodLength, rodDiameter=rodDiameter, rod=rodMat.label, direction=direction, rear=(0., -thickness), normal=(0., -1.),
 	               obliquity=obliquity, seed=seed)
-	s.facts['restLength'] = measure.geometricLength(body.positions, np.zeros(len(body)), 0.5 * rodDiameter, direction)
+	s.facts['restLength'] = measure.geometricLength(body.positions[:, :2], np.zeros(len(body)), 0.5 * rodDiameter, direction)
 	return s
 
 

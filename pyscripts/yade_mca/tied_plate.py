@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from . import packings
+from ._bodies import material as asMaterial
 from ._yade import scene as omega
 from ._yade import yadeClass
 from .packings import Polygon, Rectangle, hexagonal
@@ -144,7 +144,7 @@ def tiedPlate(material, thickness, spacing, automataWidth=80e-3, plateWidth=120e
 	plate = _platePacking(spacing, thickness, half, lean, coupled)
 	s = start(engineOptions) if scene is None else scene
 	s.automata.dtFactor = dtFactor
-	m = packings._material(material)
+	m = asMaterial(material)
 	s.add('plate', plate, m, mask=mask)
 	s.facts.update(thickness=thickness, spacing=spacing, automataWidth=2 * half, mode=mode, ends=ends, plate=m.label, angle=angle)
 	if coupled:

@@ -81,7 +81,7 @@ GOOD = {
         'packings.resetStates.ids': bodies, 'packings.cellGeometry.name': 'hexagonal', 'packings.create.name': 'hexagonal', 'scenes.tiedPlate.largest': 3.,
         'materials.Material.flowStress.plasticStrain': 0.1, 'materials.Material.johnsonCookFractureStrain.triaxiality': 0.3,
         'measure.momentumSettled.tolerance': 1e-3, 'outlines.Polygon.classify.radius': D, 'packings.fcc.shape': ball,
-        'packings.fcc.origin': (0., 0., 0.), 'packings.fcc.orientation': ((1., 1., 1.), (1., -1., 0.)), 'packings.SpacePacking.translated.by': (D, 0., 0.),
+        'packings.fcc.rim': 'full', 'packings.fcc.mirror': '', 'packings.fcc.origin': (0., 0., 0.), 'packings.fcc.orientation': ((1., 1., 1.), (1., -1., 0.)), 'packings.SpacePacking.translated.by': (D, 0., 0.),
         'packings.Box.low': (0., 0., 0.), 'packings.Box.high': (D, D, D), 'packings.Cylinder.start': (0., 0., 0.), 'packings.Cylinder.end': (0., 0., D),
         'packings.Ball.centre': (0., 0., 0.), 'packings.Box.inside.points': [(0., 0., 0.)], 'packings.Cylinder.inside.points': [(0., 0., 0.)],
         'packings.Ball.inside.points': [(0., 0., 0.)]

@@ -81,8 +81,3 @@ def test_shapesRefuseWhatTheyCannotBe():
 	for wrong in (lambda: Box((0, 0, 0), (1, 1, 0)), lambda: Cylinder((0, 0, 0), (0, 0, 0), 1.), lambda: Ball((0, 0, 0), -1.), lambda: Ball((0, 0), 1.)):
 		with pytest.raises(PackingError):
 			wrong()
-
-
-def test_bodiesAreOfThePlaneOnlySoFar(plugin):
-	with pytest.raises(PackingError, match='plane strain only'):
-		packings.addBodies(packings.fcc(D, Ball((0, 0, 0), 2 * D)), '4340')

@@ -9,6 +9,8 @@
 #define MCA_TURN(F, V, name, presence, shown, scripts, text) F(name, double, presence, shown, text)
 #define MCA_TURN_SUM(F, V, name, presence, text) F(name, presence, text)
 #define MCA_OUT_OF_PLANE(F) F(szz, double, always, "stressZZ", "deviator normal to the plane [Pa]")
+/// Planes of symmetry are of space only.
+#define MCA_MIRRORS(V)
 /// Stresses of contacts.
 #define MCA_CONTACT_SIDES(F, V) \
 	F(s, double, saved, "J times normal stress of this side [Pa]") \

@@ -58,6 +58,14 @@ void Solver::checkOutlines(const std::vector<Automaton>& automata, const Solver*
 		throw Error(s.str());
 	}
 }
+void Solver::makeMirrors(const std::vector<Automaton>& automata, const Solver*)
+{
+	for (const Automaton& a : automata)
+		if (any(a.mirror))
+			throw Error(
+				"automaton " + std::to_string(a.id) + ": planes of symmetry (state.mirrors) are of bodies in space; in plane strain set it "
+				"to 0 and block the motion across a row of half weight.");
+}
 /// Sum of the weights of its links, at least what it weighs.
 double Solver::slots(size_t i) const
 {

@@ -52,6 +52,20 @@ template <class S> double deviatorEnergyAt(const S& store, size_t i, double pair
 /// Mises stress; sum over its links of the squares of the stresses [Pa2].
 template <class S> double equivalentStressAt(const S& store, size_t i, double squares) { return mca::equivalentStress(squares * store.invN[i], store.szz[i]); }
 template <class C> bool sidesAre(const C& contacts, size_t n) { return contacts.s.size() == n && contacts.tau.size() == n; }
+/// What the links of an automaton that hold measure of F, at the present positions.
+template <class S> Tensor<double> measured(const S& store, size_t i)
+{
+	Tensor<double> sum = {};
+	for (int k = 0; k < nLinks; k++)
+		if (holds(store.flags[i], k)) addMeasured(sum, store.flags[i], k, store.between(i, size_t(store.neighbour[linkSlot(i, k)])));
+	return sum;
+}
+template <class S> bool   hasMirrors(const S&) { return false; }
+template <class S> bool   isMirrored(const S&, size_t) { return false; }
+template <class S> double mirrorShare(const S&, size_t) { return 1.; }
+template <class S> double pairShare(const S&, size_t, size_t) { return 1.; }
+/// Weight of a link in the exchange of volume (5e): weighted rims take no part.
+inline double exchangeWeight(Flags, double, int) { return 1.; }
 /// f(array) of the out-of-plane stresses.
 template <class S, class F> bool outOfPlane(const S& store, F&& f) { return f(store.szz); }
 /// Takes over what is of this kind only.

@@ -9,6 +9,11 @@
 #define MCA_TURN(F, V, name, presence, shown, scripts, text) V(name, presence, scripts, text, #name "X", #name "Y", #name "Z")
 #define MCA_TURN_SUM(F, V, name, presence, text) V(name, presence, text, #name "X", #name "Y", #name "Z")
 #define MCA_OUT_OF_PLANE(F)
+/// Where an automaton lies on a plane of symmetry: the direction of its normal x, y, z in the frame of the packing [-], else 0.
+#define MCA_MIRRORS(V) \
+	V(mirrorFirst, whenUsed, hidden, "normal of a plane of symmetry x = const in the packing", "mirrorFirstx", "mirrorFirsty", "mirrorFirstz") \
+	V(mirrorSecond, whenUsed, hidden, "normal of a plane of symmetry y = const in the packing", "mirrorSecondx", "mirrorSecondy", "mirrorSecondz") \
+	V(mirrorThird, whenUsed, hidden, "normal of a plane of symmetry z = const in the packing", "mirrorThirdx", "mirrorThirdy", "mirrorThirdz")
 /// Stresses of contacts.
 #define MCA_CONTACT_SIDES(F, V) V(traction, saved, "J times traction of this side [Pa]", "tx", "ty", "tz")
 #define MCA_CONTACT_BEFORE(F, V) V(before, scratch, "traction before this step, turned with the pair [Pa]", "bx", "by", "bz")

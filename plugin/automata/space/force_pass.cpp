@@ -56,7 +56,9 @@ namespace {
 				const v8      r2 = choose<intact>(on, dot(r, r), dij * dij), invR2 = 1. / r2;
 				const Vec<v8> mine = gatherTraction(V.tractions(k, g), inRow), others = tractionsOfOthers(V.tractionOfAll, j, k);
 				const Vec<v8> both  = ofBothSides(pairArea(w, dij), mine, others);
-				const Vec<v8> press = choose<intact>(on, times(push + theirs, k), none); // pushes i by its negative
+				const v8      part  = weights<intact>(bits, k);
+				const Vec<v8> pushes = times(push + theirs, k), 
+					      press = choose<intact>(on, intact ? pushes : pushes * part, none); // pushes i by its negative
 				v8            q {};
 				if (viscous) {
 					const v8 closing = dot(r, other.velocity - v);
@@ -64,7 +66,7 @@ namespace {
 						  : w * viscousCoefficient(closing, invR2, own.linear, own.quadratic, Lattice::width(V.d));
 				}
 				if (account) { // what of the push is viscous
-					const Vec<v8> p = choose<intact>(on, times(viscousPush + theirs * viscousShares(V, j), k), none);
+					const Vec<v8> p = choose<intact>(on, times(viscousPush + theirs * viscousShares(V, j), k) * part, none);
 					ofViscosity     = fma(q, r, ofViscosity) - p, ofPressure += p - press;
 				}
 				const v8 perLength = root(invR2);

@@ -58,6 +58,40 @@ MCA_INLINE ContactTrial contactTrial(Side<double> old, Vec<double> r, Vec<double
 template <class S> double deviatorEnergyAt(const S& store, size_t i, double pairs) { return deviatorEnergy(store.materialOf(i).G, store.diameter[i], pairs); }
 /// Mises stress; sum over its links of the squares of the stresses [Pa2].
 template <class S> double equivalentStressAt(const S& store, size_t i, double squares) { return mca::equivalentStress(squares * store.invN[i]); }
+/// Where automata have planes of symmetry.
+template <class S> bool hasMirrors(const S& store) { return !store.mirrorFirst.empty(); }
+template <class S> bool isMirrored(const S& store, size_t i)
+{
+	return hasMirrors(store) && !(isZero(store.mirrorFirst.at(i)) && isZero(store.mirrorSecond.at(i)) && isZero(store.mirrorThird.at(i)));
+}
+/// Bits of the planes of symmetry on which an automaton lies, and the share of it that is on this side of them.
+template <class S> int mirrorsOf(const S& store, size_t i)
+{
+	if (!hasMirrors(store)) return 0;
+	return int(!isZero(store.mirrorFirst.at(i))) + 2 * int(!isZero(store.mirrorSecond.at(i))) + 4 * int(!isZero(store.mirrorThird.at(i)));
+}
+inline double             shareWithin(int planes) { return 1. / double(1 << __builtin_popcount(unsigned(planes))); }
+template <class S> double mirrorShare(const S& store, size_t i) { return shareWithin(mirrorsOf(store, i)); }
+/// The share of a pair that is on this side of the planes on which both lie.
+template <class S> double pairShare(const S& store, size_t i, size_t j) { return shareWithin(mirrorsOf(store, i) & mirrorsOf(store, j)); }
+/// f(axis, normal in the packing) for the planes of symmetry of an automaton; those that it has not are zero.
+template <class S, class F> void eachMirror(const S& store, size_t i, F&& f)
+{
+	f(0, store.mirrorFirst.at(i)), f(1, store.mirrorSecond.at(i)), f(2, store.mirrorThird.at(i));
+}
+/// What the links of an automaton that hold measure of F, at the present positions (S8), (S9).
+template <class S> Tensor<double> measured(const S& store, size_t i)
+{
+	const Flags    flags = store.flags[i];
+	Tensor<double> sum   = {};
+	for (int k = 0; k < nLinks; k++)
+		if (holds(flags, k)) addDyad(sum, Lattice::direction(k), store.between(i, size_t(store.neighbour[linkSlot(i, k)])) * linkWeight(flags, k));
+	sum = sum * (1. / shareOfStar(flags, store.weight[i]));
+	if (hasMirrors(store)) eachMirror(store, i, [&](int axis, Vec<double> normal) { mirror(sum, axis, normal); });
+	return sum;
+}
+/// Weight of a link in the exchange of volume (5e).
+inline double exchangeWeight(Flags flags, double weight, int k) { return linkWeight(flags, k) / shareOfStar(flags, weight); }
 template <class C> bool sidesAre(const C& contacts, size_t n) { return contacts.traction.size() == n; }
 template <class S, class F> bool outOfPlane(const S&, F&&) { return true; }
 /// Takes over what is of this kind only: nothing.

@@ -126,7 +126,7 @@ namespace {
 			acting[l]        = V.mean[l] + V.viscous[l];
 		}
 		for (int l = 0; l < blockSize; l++) // factor = 0: the push is zero
-			for (int c = 0; c < pushSize; c++) V.push[pushSize * l + c] *= acting[l] * V.cell[l];
+			for (int c = 0; c < pushSize; c++) V.push[pushSize * l + c] *= acting[l] * (V.cell[l] / shareOfStar(V.flags[l], V.weight[l]));
 		for (int l = 0; account && l < blockSize; l++)
 			V.record[nodeSize * l + viscousShareAt] = acting[l] != 0. ? V.viscous[l] / acting[l] : 0.;
 	}

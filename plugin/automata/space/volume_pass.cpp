@@ -31,23 +31,39 @@ namespace {
 				if (mixed)
 					for (int l = 0; l < lanes; l++) perD2[l] = 1. / sqr(0.5 * (V.d + V.diameterOfAll[j[l]]));
 				nearest = min(nearest, choose<intact>(on, dot(r, r) * perD2, splat(1.)));
-				if (!intact) addDirection(e, k, on ? splat(1.) : splat(0.));
-				addDyad(sum, k, r);
+				const v8 w = weights<intact>(bits, k);
+				if (!intact) addDirection(e, k, on ? w : splat(0.));
+				addDyad(sum, k, intact ? r : r * w);
 			}
 			to.dyads.setLanes(g, sum), store(to.nearest2 + g, nearest);
 			if (!intact) to.directions.setLanes(g, e);
 		}
 	}
+	/// Sums of automata that end at faces made those of full stars (S8), and those at planes of symmetry (S9).
+	void completeStars(const BlockView& V, LinkSums& to)
+	{
+		for (int l = 0; l < blockSize; l++) {
+			if (!(V.flags[l] & halfBits) && !isMirrored(V.store, V.base + size_t(l))) continue;
+			const double   per = 1. / shareOfStar(V.flags[l], V.weight[l]);
+			Tensor<double> F = to.dyads.at(l) * per;
+			Symmetric<double> e = to.directions.at(l) * per;
+			if (hasMirrors(V.store))
+				eachMirror(V.store, V.base + size_t(l), [&](int axis, Vec<double> normal) { mirror(F, axis, normal), mirror(e, normal); });
+			to.dyads.set(l, F), to.directions.set(l, e);
+		}
+	}
 	/// Volumes that contacts alone would give, and what they push with.
 	template <EosKind law> void contactShares(const BlockView& V, const VolumeConstants<law>& c, const double* contactSum, BlockResult& out)
 	{
-		double stiffest = out.stiffest;
-		int    clampCount = 0;
+		double             stiffest = out.stiffest;
+		int                clampCount = 0;
+		alignas(64) double mass[blockSize]; // Omega0 times weight, of what is beyond planes of symmetry as well
+		for (int l = 0; l < blockSize; l++) mass[l] = V.block.weighted ? V.cell[l] / mirrorShare(V.store, V.base + size_t(l)) : V.cell[l];
 #pragma omp simd reduction(max : stiffest) reduction(+ : clampCount)
 		for (int l = 0; l < blockSize; l++) {
-			const double J = contactRatio(contactSum[l]), cell = contactCell(V.d, V.cell[l], V.factor[l]);
+			const double J = contactRatio(contactSum[l]), cell = contactCell(V.d, mass[l], V.factor[l]);
 			V.h[l]         = pressureShare<ofContacts(VolumeRule::affine)>(pressure<law>(c.eos, J - 1.), J, cell * (1. / nLinks));
-			stiffest       = max(stiffest, stiffness(c, J) * (cell / V.cell[l]));
+			stiffest       = max(stiffest, stiffness(c, J) * (cell / mass[l]));
 			clampCount += J - 1. < c.clampAt ? 1 : 0;
 		}
 		out.stiffest = stiffest, out.clamped += clampCount;
@@ -59,6 +75,7 @@ namespace {
 		const BulkViscosity        viscosity(V.material, V.d, perMove);
 		LinkSums                   L;
 		sumLinks<intact, mixed>(V, L);
+		if (V.block.weighted) completeStars(V, L);
 		for (int l = 0; init && l < blockSize; l++) {
 			const AffineRest r = affineRest(c, L.dyads.at(l));
 			V.factor[l] = r.factor, V.rest[l] = r.rest;

@@ -3,14 +3,12 @@
 #pragma once
 #include "../lattice.hpp"
 #include "../material.hpp"
+#include "../volume_rule.hpp"
 
 namespace mca {
 inline namespace MCA_SPACE {
 
 using mca::dispatch; // of laws, beside that of volume rules below
-
-/// affine (default): J = det F from the links; inversePower: mean of (d/r)^dim; meanDistance: mean linear strain, as published.
-enum class VolumeRule { affine, inversePower, meanDistance };
 
 /// f(rule as a compile-time constant)
 template <class F> MCA_INLINE auto dispatch(VolumeRule rule, F&& f)

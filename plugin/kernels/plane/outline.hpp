@@ -13,6 +13,9 @@ static_assert(outlineShift + nLinks <= 32, "the bits of the triangles do not fit
 /// Bit k: the triangle between links k and k + 1 belongs to the body.
 using Triangles = uint32_t;
 
+/// All links with full weight: those at weighted rims exchange no volume (5e).
+inline bool isWholeStar(Flags flags) { return isWhole(flags); }
+
 constexpr int  nextLink(int k) { return (k + 1) % nLinks; }
 constexpr int  lastLink(int k) { return (k + nLinks - 1) % nLinks; }
 constexpr bool hasTriangle(Triangles t, int k) { return (t >> k) & 1; }

@@ -63,6 +63,7 @@ template <class T> MCA_INLINE Tensor<T> cofactor(const Tensor<T>& A)
 {
 	return { cross(A.column[1], A.column[2]), cross(A.column[2], A.column[0]), cross(A.column[0], A.column[1]) };
 }
+inline Symmetric<double> operator*(const Symmetric<double>& a, double f) { return { a.xx * f, a.yy * f, a.zz * f, a.yz * f, a.zx * f, a.xy * f }; }
 /// f times the unit tensor
 inline Symmetric<double> isotropic(double f) { return { f, f, f, 0., 0., 0. }; }
 
@@ -103,6 +104,10 @@ template <int n> struct TensorLanes {
 template <int n> struct SymmetricLanes {
 	alignas(64) double xx[n], yy[n], zz[n], yz[n], zx[n], xy[n];
 	MCA_INLINE Symmetric<double> at(int l) const { return { xx[l], yy[l], zz[l], yz[l], zx[l], xy[l] }; }
+	MCA_INLINE void              set(int l, const Symmetric<double>& t)
+	{
+		xx[l] = t.xx, yy[l] = t.yy, zz[l] = t.zz, yz[l] = t.yz, zx[l] = t.zx, xy[l] = t.xy;
+	}
 	MCA_INLINE void              setLanes(int g, const Symmetric<v8>& t)
 	{
 		store(xx + g, t.xx), store(yy + g, t.yy), store(zz + g, t.zz), store(yz + g, t.yz), store(zx + g, t.zx), store(xy + g, t.xy);

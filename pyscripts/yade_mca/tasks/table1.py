@@ -24,7 +24,7 @@ CASES = ('lengthLoss', 'lengthLossUnbroken', GEOMETRIC, 'velocityLossTail', 'vel
 
 
 def addArguments(parser):
-	options.addSceneArguments(parser, leaveOut=('thickness', 'mode'))
+	options.addSceneArguments(parser, leaveOut=('thickness', 'mode', 'dimension', 'model'))
 	group = parser.add_argument_group('runs')
 	group.add_argument('--longest', metavar='US', type=positive(float, 'us'), default=150., help='end of a run in any case (default: 150)')
 	group.add_argument('--jobs', metavar='N', type=positive(int), help='runs at once (default: processors / threads)')

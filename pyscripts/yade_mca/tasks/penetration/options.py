@@ -48,6 +48,8 @@ SCENE = {
         'speed': (1520., dict(type=positive(float, 'm/s'), metavar='M/S', help='of the rod')),
         'mode': ('coupled', dict(choices=['coupled', 'mca'], help='coupled: the middle of the plate is automata, the rest grid; mca: automata only')),
         'ends': (None, dict(choices=['fixed', 'viscous', 'free'], help='where the plate ends (default: fixed when coupled, viscous with automata only)')),
+        'dimension': (2, dict(type=int, choices=[2, 3], help='2: plane strain; 3: a round rod and a square plate in space, automata only')),
+        'model': ('quarter', dict(choices=['quarter', 'whole'], help='in space: a quarter with planes of symmetry, or all of it')),
         'seed': (1, dict(type=seed, metavar='N', help='of the scattered strengths')),
         'automata-width': (80., dict(type=positive(float, 'mm'), metavar='MM', help='width of the part of the plate that is automata')),
         'width': (120., dict(type=positive(float, 'mm'), metavar='MM', help='whole width of the plate when coupled; with automata only it is --automata-width')),
@@ -85,6 +87,10 @@ def given(args):
 
 def fill(args):
 	"""Puts the defaults where nothing was given and checks what goes together; raises UsageError."""
+	if getattr(args, 'dimension', None) == 3:
+		if args.mode is None: args.mode = 'mca'
+		for key, only in (('mode', 'mca'), ('angle', None), ('obliquity', None), ('width', None)):
+			if getattr(args, key, None) not in (None, 0, only): raise UsageError('--%s: %s is for plane strain; leave it out with --dimension 3' % (key, getattr(args, key)))
 	for k, (default, _) in SCENE.items():
 		key = k.replace('-', '_')
 		if getattr(args, key, None) is None:
@@ -97,7 +103,7 @@ def checkScene(thickness, spacing, args):
 		raise UsageError('--spacing: %g mm is larger than the rod, which is %g mm thick' % (spacing, args.rod_diameter))
 	if spacing > 0.5 * min(args.rod_diameter, thickness):
 		raise UsageError('--spacing: %g mm is above half of the rod (%g mm) or plate (%g mm)' % (spacing, args.rod_diameter, thickness))
-	if abs(thickness / spacing - round(thickness / spacing)) > 1e-6:
+	if args.dimension == 2 and abs(thickness / spacing - round(thickness / spacing)) > 1e-6:
 		raise UsageError('--spacing: the plate of %g mm is not a whole number of spacings of %g mm; %g mm would do' % (thickness, spacing, thickness / math.ceil(thickness / spacing)))
 	if args.mode == 'coupled' and args.width < args.automata_width + 2 * spacing:
 		raise UsageError('--width: %g mm leaves no room for a grid beside %g mm of automata' % (args.width, args.automata_width))
@@ -105,7 +111,7 @@ def checkScene(thickness, spacing, args):
 		raise UsageError('--dt-factor: %g is above 1, the limit of stability' % args.dt_factor)
 	from ... import scenes
 	try:
-		scenes.checkImpact(**dict(sizes(args), thickness=1e-3 * thickness, spacing=1e-3 * spacing), rod='WHA_JC', plate='4340')
+		scenes.checkImpact(**dict(sizes(args), thickness=1e-3 * thickness, spacing=1e-3 * spacing, dimension=args.dimension), rod='WHA_JC', plate='4340')
 	except scenes.SceneError as e:
 		raise UsageError(str(e)) from None
 
@@ -122,7 +128,7 @@ def sceneOf(args):
 	return scenes.penetration(
 	        **sizes(args), ends=args.ends, fractureStrain=args.fracture_strain,
 	        spallStrength=(args.spall * scenes.SPALL[0], args.spall * scenes.SPALL[1]), strengthSpread=args.spread, friction=args.friction, eos=args.eos, yieldModel=args.yield_model, viscosity=args.viscosity, seed=args.seed,
-	        dtFactor=args.dt_factor, engineOptions=dict(volumeRule=args.volume_rule))
+	        dtFactor=args.dt_factor, dimension=args.dimension, quarter=args.model == 'quarter', engineOptions=dict(volumeRule=args.volume_rule))
 
 
 def commandLine(**options):

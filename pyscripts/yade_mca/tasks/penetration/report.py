@@ -45,7 +45,7 @@ def _tate(thickness, speed, length, obliquity):
 
 
 def name(args):
-	return 'T%g/%s' % (args.thickness, args.mode)
+	return 'T%g/%s%s' % (args.thickness, args.mode, '3d' if getattr(args, 'dimension', 2) == 3 else '')
 
 
 def normal(args):
