@@ -153,7 +153,7 @@ void McaLaw::checkState(const Row& r) const
 		if (!ok) refuse("body ", r.id, ": state.", name, " = ", value, " must be ", range, ".");
 	};
 	if (m.mirrors != 0)
-		refuse("body ", r.id, ": state.mirrors = ", m.mirrors, " must be 0: planes of symmetry are of bodies in space, and this law is in plane strain.");
+		refuse("body ", r.id, ": state.mirrors = ", m.mirrors, " must be 0: planes of symmetry are of bodies in space, this law is in plane strain.");
 	if (m.triangles != l.triangles)
 		refuse("body ", r.id, ": state.triangles = ", m.triangles, " was changed (from ", l.triangles,
 		       "); where a body ends is found when it is taken in. Set it back.");
