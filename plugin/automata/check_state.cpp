@@ -129,11 +129,13 @@ namespace {
 	void checkLinks(const Store& S)
 	{
 		need(within(S.neighbour, S.size()), "a link");
+		need(mirrorsFit(S), "a plane of symmetry");
 		for (size_t i = 0; i < S.size(); i++) {
 			const Block& b = S.blocks[i / blockSize];
 			need(!b.intact || (isWhole(S.flags[i]) && !b.outline), "a block with missing links");
 			const Triangles t = trianglesIn(S.flags[i]);
 			need(b.outline || !t, "the outline of a block");
+			need(b.weighted || !(S.flags[i] & halfBits || isMirrored(S, i)), "the weights of a block");
 			for (int k = 0; k < nLinks; k++) {
 				need(!trianglesBeside(t, k) || holds(S.flags[i], k), "a triangle without links");
 				if (!holds(S.flags[i], k)) continue;

@@ -29,7 +29,7 @@ struct Block {
 	bool    intact  = false; ///< every lane holds all links with full weight, and no outline is near
 	bool    outline = false; ///< some automaton, or one that it is linked to, ends at an outline
 	bool    mixed   = false; ///< some link leads to another species
-	bool    weighted = false; ///< some link counts half
+	bool    weighted = false; ///< some link counts less than a whole one, or some automaton lies on a plane of symmetry
 	bool    contact = false; ///< some automaton has contacts
 	bool    awake   = true;
 	bool    moving  = true; ///< some velocity is or was not exactly zero

@@ -23,8 +23,6 @@ inline Vector3r vector3(const mca::Vec<Real>& v, Vector3r rest = Vector3r::Zero(
 		rest[c] = v[c];
 	return rest;
 }
-/// State::blockedDOFs of a translation
-inline unsigned translation(int c) { return unsigned(State::DOF_X) << c; }
 inline mca::Triple triple(const Vector3r& v) { return { v[0], v[1], v[2] }; }
 inline Vector3r    vector3(const mca::Triple& t) { return Vector3r(t[0], t[1], t[2]); }
 inline mca::Ways   freeWays(const State& s)

@@ -197,14 +197,14 @@ class Frames:
 	NAME = re.compile(r'frame_(\d+)\.png')
 
 	def __init__(self, folder, bounds, interval, resumeAt=None):
-		"""interval: least time between frames [s]; resumeAt: time of the checkpoint of a run that goes on [s]: frames from then on are forgotten."""
+		"""interval: least time between frames [s]; resumeAt: time of the checkpoint of a run that goes on [s]: later frames are forgotten; that of its own time was drawn before it."""
 		self.folder, self.interval = Path(folder), interval
 		self.folder.mkdir(exist_ok=True)
 		self.painter = Painter(bounds)
 		self.files = {}
 		for f in sorted(self.folder.iterdir()):
 			match = self.NAME.fullmatch(f.name)
-			if match and resumeAt is not None and 1e-9 * int(match[1]) < resumeAt - 0.5e-9:
+			if match and resumeAt is not None and 1e-9 * int(match[1]) < resumeAt + 0.5e-9:
 				self.files[int(match[1])] = f
 			elif match or f.name.startswith('.frame_'):
 				f.unlink()

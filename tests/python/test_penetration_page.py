@@ -93,6 +93,12 @@ def test_whichFramesThereAreDependsOnTheTimesAlone(tmp_path, monkeypatch):
 	first = frames.Frames(tmp_path / 'b', BOUNDS, 1e-6)
 	for t in times[:250]:
 		first.update(at(t))
+	there = [f.name for f in sorted((tmp_path / 'b').iterdir())]
+	resumeAt = 1e-9 * int(there[-9][6:-4])  # a checkpoint that follows a frame at once
+	again = frames.Frames(tmp_path / 'c', BOUNDS, 1e-6, resumeAt=resumeAt)
+	assert again.files == {}
+	for name in there: (tmp_path / 'c' / name).write_bytes((tmp_path / 'b' / name).read_bytes())
+	assert [f.name for f in frames.Frames(tmp_path / 'c', BOUNDS, 1e-6, resumeAt=resumeAt).files.values()] == there[:-8]
 	again = frames.Frames(tmp_path / 'b', BOUNDS, 1e-6, resumeAt=times[200])
 	for t in times[200:]:
 		again.update(at(t))

@@ -146,6 +146,13 @@ def test_refusals(plugin):
 	engine()
 	first = next(i for i in ids if O.bodies[i].state.mirrors)
 	assert 'leave the plane' in refusal(lambda: setattr(O.bodies[first].state, 'blockedDOFs', ''))
+	O.reset()
+	p = packings.fcc(D, cube)
+	ids = packings.addBodies(p, copper())
+	engine()
+	state = O.bodies[ids[int(np.argmin(np.linalg.norm(p.positions - p.positions.mean(axis=0), axis=1)))]].state
+	state.mirrors, state.mass, state.blockedDOFs = 1, 0.5 * state.mass, 'xYZ'
+	assert 'both sides' in refusal(lambda: None)
 	for arguments, says in ((dict(mirror='xx'), 'mirror must name'), (dict(mirror='x', orientation=((1, 1, 0), (0, 0, 1))), 'cubic cell'), (dict(rim='cells'), 'rim')):
 		with pytest.raises(PackingError, match=says): packings.fcc(D, cube, **arguments)
 	with pytest.raises(PackingError, match='velocity'): packings.addBodies(packings.fcc(D, cube), copper(), velocity=(1., 2.))

@@ -62,6 +62,7 @@ template <class S> Tensor<double> measured(const S& store, size_t i)
 }
 template <class S> bool   hasMirrors(const S&) { return false; }
 template <class S> bool   isMirrored(const S&, size_t) { return false; }
+template <class S> bool   mirrorsFit(const S&) { return true; }
 template <class S> double mirrorShare(const S&, size_t) { return 1.; }
 template <class S> double pairShare(const S&, size_t, size_t) { return 1.; }
 /// Weight of a link in the exchange of volume (5e): weighted rims take no part.

@@ -28,6 +28,17 @@ namespace {
 		const Tensor<double> C = cofactor(M); // M is symmetric: its inverse is C/det
 		return (C.column[0] * b[0] + C.column[1] * b[1] + C.column[2] * b[2]) * (1. / det);
 	}
+	/// Whether it has links to both sides of the plane across `axis` on which it lies.
+	bool reachesBeyond(const Store& S, size_t i, int axis)
+	{
+		double low = 0, high = 0;
+		for (int k = 0; k < nLinks; k++)
+			if (holds(S.flags[i], k)) {
+				const double c = Lattice::bearing(S.between(i, size_t(S.neighbour[linkSlot(i, k)])))[axis];
+				low = std::min(low, c), high = std::max(high, c);
+			}
+		return low < -0.1 && high > 0.1;
+	}
 	[[noreturn]] void refuse(const Automaton& a, int axis, const std::string& why)
 	{
 		std::ostringstream s;
@@ -105,7 +116,8 @@ void Solver::makeMirrors(const std::vector<Automaton>& automata, const Solver* o
 		int           count = 0;
 		for (int axis = 0; axis < dim; axis++) count += a.mirror[axis];
 		// beyond the planes it goes on: it is at no surface, where other automata of its body could touch it
-		if (known < 0 && std::fabs(a.weight - std::ldexp(1., -count)) < 1e-6 && isWholeStar(S.flags[i])) S.flags[i] &= ~Flags(exposedBit);
+		const bool inside = std::fabs(a.weight - std::ldexp(1., -count)) < 1e-6 && isWholeStar(S.flags[i]);
+		if (inside && (known < 0 || !(old->store.flags[size_t(known)] & exposedBit))) S.flags[i] &= ~Flags(exposedBit);
 		for (int axis = 0; axis < dim; axis++) {
 			if (!a.mirror[axis]) continue;
 			planes[axis].check(a, axis);
@@ -115,6 +127,7 @@ void Solver::makeMirrors(const std::vector<Automaton>& automata, const Solver* o
 				to.set(i, (axis == 0 ? O.mirrorFirst : axis == 1 ? O.mirrorSecond : O.mirrorThird).at(size_t(known)));
 				continue;
 			}
+			if (reachesBeyond(S, i, axis)) refuse(a, axis, "but it is linked to automata on both sides of it; the body must end there.");
 			const Vec<double> n = normalInPacking(S, i, axis);
 			const auto        along = [&](const Vec<double>& p) { return std::fabs(plainDot(p, n)); };
 			const auto        best  = std::max_element(symmetries, symmetries + dim, [&](auto& p, auto& q) { return along(p) < along(q); });

@@ -60,9 +60,19 @@ template <class S> double deviatorEnergyAt(const S& store, size_t i, double pair
 template <class S> double equivalentStressAt(const S& store, size_t i, double squares) { return mca::equivalentStress(squares * store.invN[i]); }
 /// Where automata have planes of symmetry.
 template <class S> bool hasMirrors(const S& store) { return !store.mirrorFirst.empty(); }
-template <class S> bool isMirrored(const S& store, size_t i)
+/// f(axis, normal in the packing) for the planes of symmetry of an automaton; those that it has not are zero.
+template <class S, class F> void eachMirror(const S& store, size_t i, F&& f)
 {
-	return hasMirrors(store) && !(isZero(store.mirrorFirst.at(i)) && isZero(store.mirrorSecond.at(i)) && isZero(store.mirrorThird.at(i)));
+	f(0, store.mirrorFirst.at(i)), f(1, store.mirrorSecond.at(i)), f(2, store.mirrorThird.at(i));
+}
+/// Whether what a file says of planes of symmetry is possible: for all automata or for none, and normals are of unit length or zero.
+template <class S> bool mirrorsFit(const S& store)
+{
+	const size_t n = store.mirrorFirst.size();
+	bool         fit = store.mirrorSecond.size() == n && store.mirrorThird.size() == n && (n == 0 || n == store.size());
+	for (size_t i = 0; fit && i < n; i++)
+		eachMirror(store, i, [&](int, Vec<double> normal) { fit &= isZero(normal) || std::fabs(plainSquare(normal) - 1.) < 1e-9; });
+	return fit;
 }
 /// Bits of the planes of symmetry on which an automaton lies, and the share of it that is on this side of them.
 template <class S> int mirrorsOf(const S& store, size_t i)
@@ -70,15 +80,11 @@ template <class S> int mirrorsOf(const S& store, size_t i)
 	if (!hasMirrors(store)) return 0;
 	return int(!isZero(store.mirrorFirst.at(i))) + 2 * int(!isZero(store.mirrorSecond.at(i))) + 4 * int(!isZero(store.mirrorThird.at(i)));
 }
+template <class S> bool   isMirrored(const S& store, size_t i) { return mirrorsOf(store, i) != 0; }
 inline double             shareWithin(int planes) { return 1. / double(1 << __builtin_popcount(unsigned(planes))); }
 template <class S> double mirrorShare(const S& store, size_t i) { return shareWithin(mirrorsOf(store, i)); }
 /// The share of a pair that is on this side of the planes on which both lie.
 template <class S> double pairShare(const S& store, size_t i, size_t j) { return shareWithin(mirrorsOf(store, i) & mirrorsOf(store, j)); }
-/// f(axis, normal in the packing) for the planes of symmetry of an automaton; those that it has not are zero.
-template <class S, class F> void eachMirror(const S& store, size_t i, F&& f)
-{
-	f(0, store.mirrorFirst.at(i)), f(1, store.mirrorSecond.at(i)), f(2, store.mirrorThird.at(i));
-}
 /// What the links of an automaton that hold measure of F, at the present positions (S8), (S9).
 template <class S> Tensor<double> measured(const S& store, size_t i)
 {

@@ -97,7 +97,7 @@ def account(run):
 	line = lambda head, v: ('', head, show(1e-3 * v, '%.1f'), show(100 * v / start, '%.2f'))
 	rows = [line(svg.swatch(COLOUR[n]) + escape(n), v) for n, v in parts.items()] + [line('sum', last['total']), line('at the impact', start)]
 	title = 'Energy at the end: ' + ', '.join('%s %.2f %%' % (n, 100 * v / start) for n, v in parts.items())
-	return svg.bar(parts, title, colours) + table(('kind', 'kJ/m', '% of the impact energy'), rows)
+	return svg.bar(parts, title, colours) + table(('kind', 'kJ' if run.scene.facts.get('dimension') == 3 else 'kJ/m', '% of the impact energy'), rows)
 
 
 def charts(run):
