@@ -87,7 +87,7 @@ namespace {
 			old, r, v * dt, pairSpin(M.omega.at(i), M.omega.at(j), V.arm[c], dt), pairDilation(M.dTheta[i], M.dTheta[j], ofBoth), V.twoG[c]);
 		const Side<double> now = where(touch > 0., all.trial);
 		V.touch[c] = touch, V.along[c] = dot(r, v);
-		setBefore(V, c, all.before); // for the account
+		setBefore(V, c, before(all, old, touch > 0.)); // for the account
 		setSide(V, c, now);
 		V.first[c] = square(now);
 		if (account) V.press[c] = product(all.before, now); // place for the sums; the pressure comes later

@@ -210,6 +210,16 @@ TEST(SpaceContact, PushIsTheDerivativeOfTheEnergy)
 	}
 }
 
+TEST(SpaceContact, WhatHasSlidThroughAndDoesNotTouchHeldNothing)
+{
+	// near zero distance a small move is a large strain, which the account must not take for what the pair held
+	const Vec<double> old { 3e8, -1e8, 2e8 }, r { 1e-6, 2e-6, 0. }, u { 0.01, -0.02, 0.03 }, spin { 0.1, 0.2, 0.3 };
+	const auto        t = contactTrial(old, r, u, spin, 0.001, 2e11);
+	EXPECT_GT(plainSquare(t.before), 100. * plainSquare(old));
+	EXPECT_EQ(plainSquare(before(t, old, false) - old), 0.);
+	EXPECT_EQ(plainSquare(before(t, old, true) - t.before), 0.);
+}
+
 TEST(SpaceFrame, IsFoundFromItsLinks)
 {
 	std::mt19937 r(8);

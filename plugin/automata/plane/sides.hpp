@@ -43,6 +43,8 @@ MCA_INLINE ContactTrial contactTrial(Side<double> old, Vec<double> r, Vec<double
 {
 	return { advanced(old, r, u, spin, dilation, twoG), old };
 }
+/// What counts as the stress before the step.
+MCA_INLINE Side<double> before(const ContactTrial& t, Side<double>, bool) { return t.before; }
 
 /// Energy of the deviator of an automaton that pairs and its out-of-plane stress hold [J/m].
 template <class S> double deviatorEnergyAt(const S& store, size_t i, double pairs)

@@ -53,6 +53,8 @@ MCA_INLINE ContactTrial contactTrial(Side<double> old, Vec<double> r, Vec<double
 	const auto a = advance(old, pairMotion(r, u, spin), dilation, twoG);
 	return { a.trial, a.before };
 }
+/// What counts as the stress before the step. Pairs that have slid into each other do not touch and strain without limit near zero distance.
+MCA_INLINE Side<double> before(const ContactTrial& t, Side<double> old, bool touches) { return where(touches, t.before) + where(!touches, old); }
 
 /// Energy of the deviator of an automaton that pairs hold [J].
 template <class S> double deviatorEnergyAt(const S& store, size_t i, double pairs) { return deviatorEnergy(store.materialOf(i).G, store.diameter[i], pairs); }
