@@ -20,6 +20,12 @@ struct McaEngine::Change {
 namespace {
 	bool differs(Real a, Real b) { return !(a == b || (std::isnan(a) && std::isnan(b))); }
 
+	/// In space about all axes, in the plane about z.
+	bool otherInertia(const State& s, Real was, int dimension)
+	{
+		return differs(s.inertia[2], was) || (dimension == 3 && (differs(s.inertia[0], was) || differs(s.inertia[1], was)));
+	}
+
 	/// Zero when both have the same bits.
 	template <class T> uint64_t unlike(const T& a, const T& b)
 	{
@@ -39,6 +45,20 @@ namespace {
 	{
 		soon(s.se3), soon(s.vel), soon(s.angVel), soon(s.inertia[2]), soon(s.blockedDOFs), soon(s.temperature), soon(s.brokenLinks);
 	}
+	/// An automaton on a plane of symmetry stays on it.
+	void checkMirrors(const Body& b, const McaState& s, const Vector3r& was)
+	{
+		for (int c = 0; c < 3; c++) {
+			if (!((s.mirrors >> c) & 1)) continue;
+			mca::Ways turns = freeTurns(s);
+			turns[size_t(c)] = false;
+			if (s.se3.position[c] == was[c] && s.vel[c] == 0 && !freeWays(s)[size_t(c)] && !(turns[0] || turns[1] || turns[2])) continue;
+			refuseBody(
+				b,
+				string("state.mirrors says that it lies on a plane of symmetry with its normal along ") + "xyz"[c]
+					+ ", which it may not leave, nor turn out of; set position, velocity and blockedDOFs of that direction back.");
+		}
+	}
 	void refuseEnds(const Body& b, const char* name, int now, int was)
 	{
 		refuseBody(
@@ -57,6 +77,7 @@ bool McaEngine::untouched(size_t q) const
 	const auto& s = static_cast<const McaState&>(*was.state);
 	uint64_t    d =
 		unlike(s.se3.position, was.pos) | unlike(s.se3.orientation.coeffs(), was.ori.coeffs()) | unlike(s.vel, was.vel) | unlike(s.angVel, was.angVel);
+	if (dimension == 3) d |= unlike(s.inertia[0], was.inertia) | unlike(s.inertia[1], was.inertia);
 	d |= unlike(s.mass, was.mass) | unlike(s.inertia[2], was.inertia) | unlike(s.blockedDOFs, was.blocked) | unlike(b.groupMask, was.mask);
 	d |= unlike(s.pressure, was.pressure) | unlike(s.volumeRatio, was.volumeRatio) | unlike(s.equivalentStress, was.equivalentStress)
 		| unlike(s.plasticStrain, was.plasticStrain);
@@ -150,8 +171,9 @@ McaEngine::Change McaEngine::changeOf(size_t q, bool& rebuild)
 		refuseBody(b, "state.strength = " + numberText(s.strength) + " must be above 0 and at most 1e9.");
 	if (s.triangles != was.triangles) refuseEnds(b, "triangles", s.triangles, was.triangles);
 	if (s.mirrors != was.mirrors) refuseEnds(b, "mirrors", s.mirrors, was.mirrors);
+	checkMirrors(b, s, was.pos);
 	const Real radius = static_cast<const Sphere*>(b.shape.get())->radius;
-	if (differs(s.mass, was.mass) || differs(s.inertia[2], was.inertia) || differs(radius, was.radius))
+	if (differs(s.mass, was.mass) || otherInertia(s, was.inertia, dimension) || differs(radius, was.radius))
 		refuseBody(
 			b,
 			"mass " + numberText(s.mass) + ", inertia " + numberText(s.inertia[2]) + " or radius " + numberText(radius)

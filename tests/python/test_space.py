@@ -146,6 +146,14 @@ def test_refusals(plugin):
 	engine()
 	first = next(i for i in ids if O.bodies[i].state.mirrors)
 	assert 'leave the plane' in refusal(lambda: setattr(O.bodies[first].state, 'blockedDOFs', ''))
+	O.bodies[first].state.blockedDOFs = 'xYZ'
+	O.run(2, True)
+	for change in (('blockedDOFs', 'YZ'), ('blockedDOFs', 'x'), ('vel', (1., 0, 0)), ('pos', (1e-4, 0, 0)), ('inertia', (1., 2., 3.))):
+		old = getattr(O.bodies[first].state, change[0])
+		old = old if isinstance(old, str) else tuple(old)
+		assert ('inertia' if change[0] == 'inertia' else 'plane of symmetry') in refusal(lambda: setattr(O.bodies[first].state, *change))
+		setattr(O.bodies[first].state, change[0], old)
+		O.run(1, True)
 	O.reset()
 	p = packings.fcc(D, cube)
 	ids = packings.addBodies(p, copper())
