@@ -122,7 +122,9 @@ namespace {
 	{
 		const string mass = "mass " + (dimension == 2 ? std::to_string(b.state->mass) + " kg/m" : numberText(b.state->mass) + " kg");
 		string       other;
-		if (fits(5 - dimension, b)) other = string("It is that of an automaton in ") + (dimension == 2 ? "space" : "plane strain") + ": ";
+		if (fits(5 - dimension, b))
+			other = dimension == 2 ? "It is that of an automaton in space, which McaEngine takes in a scene of such, and McaLaw does not. "
+					       : "It is that of an automaton in plane strain. ";
 		const Real   w = weightIn(dimension, b);
 		throw mca::Error(
 			"body " + std::to_string(b.id) + ": " + mass + " is " + std::to_string(w) + " of the full cell (" + numberText(b.state->mass / w)
