@@ -86,8 +86,10 @@ TEST(EngineLock, ReadersSeeWholeSteps)
 	const size_t      pairs = untouched.see().links;
 	std::atomic<bool> done { false };
 	std::atomic<long> reads { 0 };
+	int               made = 0;
 	std::thread loop([&] {
-		for (int k = 0; k < 400; k++) {
+		for (int k = 0; k < 400 || (reads <= 20 && k < 100000); k++) { // a busy machine lets readers in late
+			made++;
 			engine.step(k);
 			if (k % 10 == 0) { // a PyRunner
 				Interpreter::Held runs;
@@ -113,7 +115,7 @@ TEST(EngineLock, ReadersSeeWholeSteps)
 	loop.join();
 	for (auto& r : readers)
 		r.join();
-	EXPECT_EQ(engine.see().steps, 400);
+	EXPECT_EQ(engine.see().steps, made);
 	EXPECT_GT(engine.see().broken, 0u);
 	EXPECT_GT(reads.load(), 20);
 }
