@@ -72,6 +72,15 @@ function(mca_add_extension name)
 	set_target_properties(${name} PROPERTIES BUILD_WITH_INSTALL_RPATH ON UNITY_BUILD ${MCA_UNITY} UNITY_BUILD_BATCH_SIZE 5)
 endfunction()
 
+# mca_add_space_objects(name sources...): objects of the extension that are compiled for space
+function(mca_add_space_objects name)
+	add_library(${name} OBJECT ${ARGN})
+	target_compile_definitions(${name} PRIVATE MCA_DIM=3)
+	target_link_libraries(${name} PRIVATE mca_yade_abi mcasolver)
+	target_precompile_headers(${name} REUSE_FROM mca_sdk)
+	set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON UNITY_BUILD ${MCA_UNITY} UNITY_BUILD_BATCH_SIZE 5)
+endfunction()
+
 # mca_add_manifest(targets...): sizes, checksums and identities of the libraries, for the loader
 function(mca_add_manifest)
 	set(libraries)

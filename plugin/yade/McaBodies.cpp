@@ -69,6 +69,16 @@ int dimensionOf(const Scene& scene)
 	return first && fits(3, *first) && !fits(2, *first) ? 3 : 2;
 }
 
+int dimensionByMass(const Scene& scene)
+{
+	for (const auto& b : scene.bodies->body) {
+		if (!isAutomaton(b) || !b->state) continue;
+		if (fits(2, *b) != fits(3, *b)) return fits(3, *b) ? 3 : 2;
+		break;
+	}
+	return dimensionOf(scene);
+}
+
 void checkMotion(const Body& b, int dimension)
 {
 	const State& s = *b.state;
@@ -123,7 +133,7 @@ namespace {
 		const string mass = "mass " + (dimension == 2 ? std::to_string(b.state->mass) + " kg/m" : numberText(b.state->mass) + " kg");
 		string       other;
 		if (fits(5 - dimension, b))
-			other = dimension == 2 ? "It is that of an automaton in space, which McaEngine takes in a scene of such, and McaLaw does not. "
+			other = dimension == 2 ? "It is that of an automaton in space, which is taken in a scene of such only. "
 					       : "It is that of an automaton in plane strain. ";
 		const Real   w = weightIn(dimension, b);
 		throw mca::Error(

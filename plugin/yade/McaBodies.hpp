@@ -16,6 +16,9 @@ void checkNumbers(const Scene& scene);
 [[noreturn]] void refuseBody(const Body& b, const string& what);
 /// 3 when an automaton of the scene may leave the plane (x, y), or has the mass of one in space; else 2.
 int dimensionOf(const Scene& scene);
+/// What the masses of the automata say: 3 when the first has that of space and not that of plane strain, 2 when it is the other way round; else
+/// dimensionOf().
+int dimensionByMass(const Scene& scene);
 /// May move along z or turn about x or y.
 bool leavesPlane(const State& s);
 /// Throws mca::Error unless McaEngine can take over the motion of a body: finite, in the plane when that is the dimension.

@@ -3,12 +3,12 @@
 #pragma once
 #include "McaPhys.hpp"
 #include "McaSolverEngine.hpp"
-#include "automata/solver.hpp"
+#include "kernels/volume_rule.hpp"
 #include <core/Body.hpp>
-#include <map>
 #include <thread>
 
 namespace yade {
+class McaLawLoop;
 
 class McaLaw : public McaSolverEngine {
 public:
@@ -20,10 +20,13 @@ public:
 	void addForces(Scene* scene);
 	py::dict energies();
 	py::dict counters() const;
+	mca::VolumeRule rule() const;
+	/// Of O.engines, as the last step found them.
+	const vector<const Engine*>& integrators() const { return newtons; }
 	py::list links() const;
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(McaLaw, McaSolverEngine,
-		"First half of the law of movable cellular automata in YADE's loop (plane strain x, y): volume and pressure of every automaton, trial "
+		"First half of the law of movable cellular automata in YADE's loop (plane strain x, y, or space): volume and pressure of every automaton, trial "
 		"stresses of its pairs, radial return, fracture "
 		"and contact friction, by the same formulas, at the same steps and in the same order as :yref:`McaEngine`, written plainly. O.engines: "
 		"ForceResetter, collider "
@@ -37,7 +40,9 @@ public:
 		"every step; what cannot be computed ends the run with an error "
 		"before anything moves: masks of two automata without a common bit (YADE's collider skips such pairs), damping or a mask of NewtonIntegrator "
 		"that concerns automata, dead or doubled engines, "
-		"O.periodic, clumps of automata, yade.mpy, states that :yref:`McaEngine` has moved. An engine whose automata are all new starts from the "
+		"O.periodic, clumps of automata, yade.mpy, states that :yref:`McaEngine` has moved. In space volumeRule is 'affine', and planes of symmetry "
+		"(state.mirrors) are refused: they are of :yref:`McaEngine`. Whether bodies are in plane strain or in space follows from their mass. An "
+		"engine whose automata are all new starts from the "
 		"beginning.",
 		((string, volumeRule, "affine", , "'affine', 'inversePower' or 'meanDistance', see McaEngine; read when links are made, a change after that "
 		    "is refused"))
@@ -48,6 +53,8 @@ public:
 		    "step"))
 		((Real, filterTime, 0, Attr::hidden, "since the last exchange of volume [s]"))
 		((int, seed, 1, , "seed of the scattered strengths; read when automata are taken in: in the first step and when bodies are added"))
+		((int, dimension, 0, Attr::readonly, "2 in plane strain, 3 in space: that of the bodies; 0 before the first step; output. In space energies are in "
+		    "J, not J/m"))
 		((long, steps, 0, Attr::readonly, "steps done; output"))
 		((Real, dtLimit, std::numeric_limits<Real>::infinity(), Attr::readonly, "largest stable time step at the present state [s]; output"))
 		((int, stiffest, -1, Attr::readonly, "body that limits the time step; output"))
@@ -81,91 +88,15 @@ public:
 	)
 	// clang-format on
 
-	/// One side of a pair; p is null where there is none.
-	struct Side {
-		McaPhys* p     = nullptr;
-		int      side  = 0;
-		int      other = -1; ///< place in rows
-	};
-	struct Row {
-		int                  id = 0;
-		int                  mask = 1;
-		State*               state    = nullptr;
-		const McaMat*        mat      = nullptr;
-		McaState*            m        = nullptr;
-		McaLawState*         l        = nullptr;
-		const mca::Material* material = nullptr;
-		Real                 d        = 0; ///< diameter [m]
-		Side                 link[mca::nLinks];
-		int                  firstContact = 0, lastContact = 0; ///< in contacts, ascending ids
-		Real                 lost      = 0;                     ///< normal stress of links that have broken in this step, with their weights [Pa]
-		Real                 curvature = 0;                     ///< second difference of the volume
-		Vector3r             motion = Vector3r::Zero(); ///< velocity [m/s] and spin [rad/s] of the last move
-		bool                 fresh  = false;            ///< has made no move
-		// of this step
-		Real   limit = 0, stiff = 0, closing = 0, turning = 1, nearestLink = 1, nearestContact = 1;
-		bool   clampedNow = false, bad = false;
-		Real   plastic = 0, coupling = 0, friction = 0, heated = 0;
-	};
-
 private:
-	using MaskTable = std::map<int, int>; ///< Body.mask -> a body that has it
-	std::thread::id            worker;    ///< that computes the steps
-	vector<std::pair<const Engine*, bool>> seen; ///< O.engines that were found good: engine, dead
-	vector<const Engine*>      newtons;
-	vector<std::pair<Real, int>> newtonsGood; ///< damping and mask
-	MaskTable                  automataGood, othersGood;
-	vector<Row>                rows;  ///< automata, ascending ids
-	vector<int>                place; ///< of body ids in rows, or -1
-	vector<Side>               contacts;
-	vector<std::pair<int, Real>> unsettled;
-	vector<int>                relinked; ///< ids whose links have changed because bodies were erased or added
-	vector<mca::Material>      materials;
-	vector<const McaMat*>      known;
-	long                       revision = 0; ///< grows when constants of pairs have changed
-	mca::VolumeRule            rule() const;
-	void                       forget();
-	void                       checkOptions(const Scene&) const;
-	void                       lastMotion(Row&) const;
-	bool                       hasMoved() const;
-	void                       checkEngines(const Scene&);
-	McaState&                  checkBody(const Scene&, const Body&) const;
-	void                       checkOther(const Body&) const;
-	void                       checkUntouched(const Row&) const;
-	void                       checkState(const Row&) const;
-	void                       checkMasks(const MaskTable& automata, const MaskTable& others);
-	void                       takeIn(Scene*);
-	void                       gather(Scene*);
-	void                       readMaterials(Scene*);
-	void                       pairConstants(const Row&, const Side&) const;
-	void                       findLinks(Scene*);
-	void                       keepVolumes(Scene*);
-	void                       findContacts(Scene*);
-	bool                       breaks(const Row&, int k) const;
-	void                       breakLinks();
-	void                       unlink(Row&, const Side&, int k);
-	Real                       determinantNow(const Row&) const;
-	void                       keepVolume(int i, Real J);
-	void                       settleVolumes(bool account);
-	Real                       distance2(const Row&, const Side&) const;
-	Real                       distance(const Row& r, const Side& s) const { return std::sqrt(distance2(r, s)); }
-	void                       contactVolume(Row&);
-	void                       filterVolumes(bool account);
-	void                       volume(Row&, bool withContacts);
-	template <mca::EosKind law> void       volumeBy(Row&, bool withContacts);
-	void                       stress(Row&);
-	mca::Pair<Real>                        trial(const Row&, const Side&, mca::Pair<Real> before, Real dilation) const;
-	void                                   finishPressure(Row&) const;
-	void                       contactFriction(Row&, const Side&, mca::Pair<Real> before, Real scale);
-	void                       scaleStresses(const Row&, Real ratio);
-	void                       checkResults();
-	[[noreturn]] void          overlapError(const Row&, const Side&, Real ratio) const;
-	Real                       coldEnergyAt(const Row&, Real J) const;
-	Real                       contactEnergyAt(const Row&, Real Jc) const;
-	void                       stateEnergies(Scene&, Real& volumetric, Real& deviatoric, Real& kinetic, Real& centre) const;
-	void                       bookEnergies(Scene*);
-	void                       refuseWhileRunning(const char* what) const;
-	int                        energyIndex[8] = { -1, -1, -1, -1, -1, -1, -1, -1 };
+	std::thread::id                        worker;  ///< that computes the steps
+	vector<std::pair<const Engine*, bool>> seen;    ///< O.engines that were found good: engine, dead
+	vector<const Engine*>                  newtons;
+	shared_ptr<McaLawLoop>                 loop;    ///< of `dimension`
+	void                                   checkOptions(const Scene&) const;
+	void                                   checkEngines(const Scene&);
+	McaLawLoop&                            loopOf(const Scene&);
+	void                                   refuseWhileRunning(const char* what) const;
 };
 REGISTER_SERIALIZABLE(McaLaw);
 

@@ -12,9 +12,11 @@ public:
 	void postLoad(McaLawState&); ///< what is used as an index
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(McaLawState, Serializable, "What :yref:`McaLaw` keeps of an automaton from step to step.",
-		((int, flags, 0, Attr::readonly, "bits 0-5: link k holds; 8-13: it counts half; 16-21: it once held; 24: the automaton may touch something; "
-		    "26-31: the triangle between links k and k + 1 belongs to the body, of an automaton at an outline (5g)"))
-		((vector<int>, partner, , Attr::readonly, "body at the other end of link k; -1: never linked [6]"))
+		((int, dimension, 2, Attr::readonly, "2 in plane strain, 3 in space, where units per thickness are without it"))
+		((long, flags, 0, Attr::readonly, "bits 0-5: link k holds; 8-13: it counts half; 16-21: it once held; 24: the automaton may touch something; "
+		    "26-31: the triangle between links k and k + 1 belongs to the body, of an automaton at an outline (5g). In space fields of 16 bits: 0-11, "
+		    "16-27, 32-43, 48; 50-61: the link counts a quarter"))
+		((vector<int>, partner, , Attr::readonly, "body at the other end of link k; -1: never linked [6, in space 12]"))
 		((Real, cell, 0, Attr::readonly, "volume at rest, Omega0 times weight [m2]"))
 		((Real, invN, 0, Attr::readonly, "1 / number of slots [-]"))
 		((Real, rest, 0, Attr::readonly, "sum of the volume rule at rest [-]"))
@@ -22,20 +24,19 @@ public:
 		((Real, P, 0, Attr::readonly, "pressure of the equation of state [Pa]"))
 		((Real, dTheta, 0, Attr::readonly, "last increment of the volume strain [-]"))
 		((Real, viscous, 0, Attr::readonly, "viscous pressure of the last move [Pa]"))
-		((Real, viscousShare, 0, Attr::readonly, "share of the viscous pressure in T of txx [-]"))
-		((Real, txx, 0, Attr::readonly, "affine rule: link k is pushed by T e_k, at outlines by T c_k (5g) [N/m]"))
-		((Real, txy, 0, Attr::readonly, "see txx [N/m]"))
-		((Real, tyx, 0, Attr::readonly, "see txx [N/m]"))
-		((Real, tyy, 0, Attr::readonly, "see txx [N/m]"))
+		((Real, viscousShare, 0, Attr::readonly, "share of the viscous pressure in push [-]"))
+		((Matrix3r, push, Matrix3r::Zero(), Attr::readonly, "affine rule: link k is pushed by push e_k, at outlines by push c_k (5g), in the frame of the "
+		    "packing [N/m]"))
 		((Real, pressureShare, 0, Attr::readonly, "pressure share of rule (6), of contacts in the affine rule [N/m]"))
 		((int, rule, 0, Attr::readonly, "volume rule: 0 affine, 1 inversePower, 2 meanDistance"))
 		((Real, contactSum, 0, Attr::readonly, "volume terms of the contacts [-]"))
 		((Real, diameter, 0, Attr::readonly, "with which the automaton was taken in [m]"))
 		((int, triangles, 0, Attr::readonly, "state.triangles with which it was taken in"))
 		((Real, moved, 0, Attr::readonly, "time step that led to the present position [s]"))
-		((Vector3r, from, Vector3r::Zero(), Attr::readonly, "position x, y [m] and turned angle [rad] before the last move"))
-		((Vector3r, expected, Vector3r::Zero(), Attr::readonly, "velocity x, y [m/s] and spin [rad/s] that the last move should have: another one "
-		    "was set by a script"))
+		((Vector3r, from, Vector3r::Zero(), Attr::readonly, "position before the last move [m]"))
+		((Quaternionr, fromOri, Quaternionr::Identity(), Attr::readonly, "orientation before the last move"))
+		((Vector3r, expected, Vector3r::Zero(), Attr::readonly, "velocity that the last move should have [m/s]: another one was set by a script"))
+		((Vector3r, expectedSpin, Vector3r::Zero(), Attr::readonly, "the same of the spin [rad/s]"))
 		((Vector3r, results, Vector3r(0, 1, 0), Attr::readonly, "pressure [Pa], volume ratio [-] and stressZZ [Pa] as the law has left them"))
 		((Real, criterion, 0, Attr::readonly, "largest fracture criterion over its limit [-]; a pair breaks at a mean of 1"))
 	)

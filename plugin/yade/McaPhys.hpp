@@ -6,18 +6,33 @@
 #include <pkg/common/NormShearPhys.hpp>
 
 namespace yade {
+class McaPhys;
+
+/// What differs between pairs in plane strain and in space: compiled for each, in law/.
+class McaPairLaw {
+public:
+	virtual ~McaPairLaw() = default;
+	static const McaPairLaw& in(int dimension);
+	/// Force of a pair of automata, its torques and what the account needs of it, into p.
+	virtual void force(McaPhys& p, const State& a, const McaLawState& la, const State& b, const McaLawState& lb) const = 0;
+	/// Whether two automata are tested for contact: both have a free side, or one has and is no part of the other's body (debris, or another mask).
+	virtual bool mayTouch(const Body& a, const McaLawState& la, const Body& b, const McaLawState& lb) const = 0;
+	/// Area of a contact of an automaton of this diameter [m, in space m2].
+	virtual Real width(Real diameter) const = 0;
+	virtual int  links() const = 0; ///< places of links
+	/// Whether what a file says of the links of an automaton is possible.
+	virtual bool fits(const McaLawState&) const = 0;
+};
 
 class McaPhys : public NormShearPhys {
 public:
 	/// This side pushes: it is closer than its rest distance, which is not that of automata that slid into each other.
 	bool pushes(int side, Real r2) const;
 	bool touching(Real r2) const { return pushes(0, r2) || pushes(1, r2); }
-	/// Whether two automata are tested for contact: both have a free side, or one has and is no part of the other's body (debris, or another mask).
-	static bool mayTouch(const Body& a, const McaLawState& la, const Body& b, const McaLawState& lb);
 	/// Where two that are found closer than their diameters start without push [m].
 	void startContact(Real r);
 	/// Penalty contact of an automaton of diameter d [m] with a rigid body.
-	void setWall(const McaMat& m, Real otherAngle, Real d);
+	void setWall(const McaMat& m, Real otherAngle, Real d, int dimension);
 	/// Functors run in a parallel region, where nothing may be thrown: they leave the first error here, and McaForces throws it before anything moves.
 	static void   leaveError(const string& what);
 	static string takeError(); ///< empty when there is none
@@ -38,9 +53,11 @@ public:
 		((bool, wall, false, Attr::readonly, "one body is no automaton: penalty contact kn, ks with Coulomb friction"))
 		((bool, half, false, Attr::readonly, "link that counts half: along a weighted rim, or with one triangle of its body beside it"))
 		((int, slot, 0, Attr::readonly, "place of the link around the first body, 60 slot degrees in the frame of the packing; (slot + 3) % 6 around "
-		    "the second"))
-		((Vector2r, s, Vector2r::Zero(), Attr::readonly, "J times normal deviatoric stress of each side [Pa]"))
-		((Vector2r, tau, Vector2r::Zero(), Attr::readonly, "J times shear stress of each side [Pa]"))
+		    "the second. In space 0-11, (slot + 6) % 12 around the second"))
+		((Vector2r, s, Vector2r::Zero(), Attr::readonly, "J times normal deviatoric stress of each side [Pa]; in plane strain"))
+		((Vector2r, tau, Vector2r::Zero(), Attr::readonly, "J times shear stress of each side [Pa]; in plane strain"))
+		((Vector3r, traction, Vector3r::Zero(), Attr::readonly, "J times traction of the first side [Pa]; in space"))
+		((Vector3r, tractionOther, Vector3r::Zero(), Attr::readonly, "the same of the second side [Pa]"))
 		((Vector2r, rest, Vector2r::Zero(), Attr::readonly, "contact: rest distance of each side [m]"))
 		((Real, d, 0, Attr::readonly, "mean diameter [m]"))
 		((Real, arm, 0.5, Attr::readonly, "arm of the first body over the distance [-]"))
@@ -48,10 +65,11 @@ public:
 		((Real, friction, 0, Attr::readonly, "Coulomb coefficient [-], the smaller of both"))
 		((Real, viscLinear, 0, Attr::readonly, "rho c1 c, the smaller of both [Pa s/m]"))
 		((Real, viscQuadratic, 0, Attr::readonly, "rho c2, the smaller of both [Pa s2/m2]"))
-		((Vector3r, force, Vector3r::Zero(), Attr::readonly, "force of this step on the first body, the second has its negative [N/m]"))
-		((Vector2r, torque, Vector2r::Zero(), Attr::readonly, "torque about z on each body [N]"))
-		((Real, heatRate, 0, Attr::readonly, "power of the pair viscosity [W/m]"))
-		((Vector2r, viscousForce, Vector2r::Zero(), Attr::readonly, "share of the viscosity in force [N/m]"))
+		((Vector3r, force, Vector3r::Zero(), Attr::readonly, "force of this step on the first body, the second has its negative [N/m, in space N]"))
+		((Vector3r, torque, Vector3r::Zero(), Attr::readonly, "torque on the first body [N, in space N m]; in plane strain about z alone"))
+		((Vector3r, torqueOther, Vector3r::Zero(), Attr::readonly, "torque on the second body [N, in space N m]"))
+		((Real, heatRate, 0, Attr::readonly, "power of the pair viscosity [W/m, in space W]"))
+		((Vector3r, viscousForce, Vector3r::Zero(), Attr::readonly, "share of the viscosity in force [N/m, in space N]"))
 		,
 		createIndex();
 	)
@@ -81,7 +99,7 @@ public:
 	YADE_CLASS_BASE_DOC(Ip2_FrictMat_McaMat_McaPhys, IPhysFunctor,
 		"Makes :yref:`McaPhys` of an automaton and a facet, wall, box or grain of FrictMat: a penalty contact of the automaton's moduli, kn = (K + "
 		"4G/3) S0/(d/2) and "
-		"ks = G S0/(d/2) [N/m per m], with the smaller friction of both. The other body is taken as rigid. Either order of the two bodies will do. "
+		"ks = G S0/(d/2) [N/m per m, in space N/m], with the smaller friction of both. The other body is taken as rigid. Either order of the two bodies will do. "
 		"The materials are read when the pair is made, "
 		"and anew when a McaMat has changed.")
 	// clang-format on

@@ -1,27 +1,29 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // McaLaw: breaking of links and exchange of volume, at the steps and in the order of plugin/automata.
-#include "McaLaw.hpp"
-#include "McaVec.hpp"
+#include "McaLawRows.hpp"
+#include "automata/sides.hpp"
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
-#include <kernels/automaton/energy.hpp>
 #include <kernels/automaton/filter.hpp>
-#include <kernels/automaton/outline.hpp>
+#include <kernels/automaton/fracture.hpp>
 
 namespace yade {
+namespace MCA_SPACE {
 using mca::nLinks;
-using mca::sqr;
 using mca::VolumeRule;
 
-bool McaLaw::breaks(const Row& r, int k) const
+bool Loop::breaks(const Row& r, int k) const
 {
 	const Side& s = r.link[k];
 	if (!r.material->fracture.active()) return false;
-	const auto end = [&](const Row& a, int side) { return mca::LinkEnd { a.l->criterion, s.p->s[side], a.m->volumeRatio, a.m->pressure, a.m->strength }; };
-	return mca::breaks(r.material->fracture, end(r, s.side), end(rows[size_t(s.other)], 1 - s.side), distance2(r, s), s.p->d);
+	const auto end = [&](const Row& a, int side, Vec toOther) {
+		return mca::LinkEnd { a.l->criterion, mca::normalStress(stressOf(*s.p, side), toOther), a.m->volumeRatio, a.m->pressure, a.m->strength };
+	};
+	const Vec x = between(r, s);
+	return mca::breaks(r.material->fracture, end(r, s.side, x), end(rows[size_t(s.other)], 1 - s.side, -x), distance2(r, s), s.p->d);
 }
 
-void McaLaw::breakLinks()
+void Loop::breakLinks()
 {
 	vector<std::pair<int, int>> pairs; // (row, link)
 	vector<int>                 touched;
@@ -47,7 +49,7 @@ void McaLaw::breakLinks()
 		s.p->linked = s.p->half = false;
 		s.p->startContact(distance(r, s)); // stresses go on
 		r.link[k] = o.link[back] = Side();
-		brokenLinks++;
+		law.brokenLinks++;
 		r.m->brokenLinks++, o.m->brokenLinks++;
 	}
 	for (size_t q = 0; q < touched.size(); q++)
@@ -55,30 +57,30 @@ void McaLaw::breakLinks()
 }
 
 /// One end of a link that breaks. It stays known as one that has held; its stresses go on in the contact.
-void McaLaw::unlink(Row& r, const Side& s, int k)
+void Loop::unlink(Row& r, const Side& s, int k)
 {
-	Real &     normal = s.p->s[s.side], &shear = s.p->tau[s.side];
-	const Real weight = mca::linkWeight(r.l->flags, k), J = r.m->volumeRatio;
-	if (Omega::instance().getScene()->trackEnergy) fracture += mca::lostAtBreak(r.d, weight, mca::pairEnergy(normal, shear, J, s.p->twoG));
-	r.lost += weight * normal / J;
-	normal *= weight, shear *= weight;
-	r.l->flags = mca::withoutTriangles(r.l->flags & ~(1 << k | 1 << (mca::halfShift + k))) | mca::exposedBit;
+	const mca::Flags flags  = flagsOf(*r.l);
+	const Stress     held   = stressOf(*s.p, s.side);
+	const Real       weight = mca::linkWeight(flags, k);
+	if (Omega::instance().getScene()->trackEnergy) law.fracture += mca::lostAtBreak(r.d, weight, mca::pairEnergy(held, r.m->volumeRatio, s.p->twoG));
+	setStress(*s.p, s.side, mca::scaled(held, weight));
+	r.lost.push_back(s);
+	const mca::Flags bits = mca::Flags(1) << k | mca::Flags(1) << (mca::halfShift + k);
+	r.l->flags            = mca::withoutTriangles(flags & ~bits) | mca::exposedBit;
 }
 
 /// det F of the links that hold, at the present positions.
-Real McaLaw::determinantNow(const Row& r) const
+Real Loop::determinantNow(const Row& r) const
 {
-	mca::Tensor<Real> sum = {};
-	for (int k = 0; k < nLinks; k++) {
-		if (!r.link[k].p) continue;
-		const Vector3r x = rows[size_t(r.link[k].other)].state->se3.position - r.state->se3.position;
-		addDyad(sum, mca::outlineTable.of(mca::trianglesIn(r.l->flags), k), vec(x));
-	}
-	return mca::linkDeterminant(sum, mca::Lattice::perVolume(r.d));
+	LinkSums sums;
+	for (int k = 0; k < nLinks; k++)
+		if (r.link[k].p) sums.add(flagsOf(*r.l), k, between(r, r.link[k]));
+	sums.complete(*r.l);
+	return mca::linkDeterminant(sums.F, mca::Lattice::perVolume(r.d));
 }
 
 // What the links had measured goes on as the rest state of what is left.
-void McaLaw::keepVolume(int i, Real J)
+void Loop::keepVolume(int i, Real J)
 {
 	Row&         r = rows[size_t(i)];
 	McaLawState& l = *r.l;
@@ -91,31 +93,30 @@ void McaLaw::keepVolume(int i, Real J)
 	mca::dispatch(VolumeRule(l.rule), [&](auto rule) {
 		Real sum = 0;
 		for (int k = 0; k < nLinks; k++)
-			if (r.link[k].p) sum += mca::linkWeight(l.flags, k) * mca::volumeTerm<rule.value>(r.link[k].p->d, distance2(r, r.link[k]));
+			if (r.link[k].p) sum += mca::linkWeight(flagsOf(l), k) * mca::volumeTerm<rule.value>(r.link[k].p->d, distance2(r, r.link[k]));
 		l.rest = mca::restKeeping<rule.value>(r.m->volumeRatio, sum + l.contactSum, l.invN);
 	});
-	if (l.flags & mca::linkBits) return;
+	if (flagsOf(l) & mca::linkBits) return;
 	l.rest = 0;
 	unsettled.emplace_back(i, r.m->volumeRatio);
 }
 
-Real McaLaw::coldEnergyAt(const Row& r, Real J) const { return mca::coldEnergy(*r.material, r.l->cell, J); }
+Real Loop::coldEnergyAt(const Row& r, Real J) const { return mca::coldEnergy(*r.material, r.l->cell, J); }
 /// Of the volume that contacts give it, if it has links: in the affine rule a volume of its own.
-Real McaLaw::contactEnergyAt(const Row& r, Real Jc) const { return mca::coldEnergy(*r.material, mca::contactCell(r.d, r.l->cell, 1.), Jc); }
+Real Loop::contactEnergyAt(const Row& r, Real Jc) const { return mca::coldEnergy(*r.material, mca::contactCell(r.d, r.l->cell, 1.), Jc); }
 
 /// Stresses of all its pairs, kept as J times them.
-void McaLaw::scaleStresses(const Row& r, Real ratio)
+void Loop::scaleStresses(const Row& r, Real ratio)
 {
+	const auto scale = [&](const Side& s) { setStress(*s.p, s.side, mca::scaled(stressOf(*s.p, s.side), ratio)); };
 	for (const Side& s : r.link)
-		if (s.p) s.p->s[s.side] *= ratio, s.p->tau[s.side] *= ratio;
-	for (int c = r.firstContact; c < r.lastContact; c++) {
-		const Side& s = contacts[size_t(c)];
-		s.p->s[s.side] *= ratio, s.p->tau[s.side] *= ratio;
-	}
+		if (s.p) scale(s);
+	for (int c = r.firstContact; c < r.lastContact; c++)
+		scale(contacts[size_t(c)]);
 }
 
 // See mca::Settling: what has lost its volume has it from its contacts from now on; what cannot go on is released, and booked.
-void McaLaw::settleVolumes(bool account)
+void Loop::settleVolumes(bool account)
 {
 	for (const auto& entry : unsettled) {
 		Row&       r      = rows[size_t(entry.first)];
@@ -136,9 +137,9 @@ void McaLaw::settleVolumes(bool account)
 			const Side& s         = contacts[size_t(c)];
 			s.p->rest[s.side] = settling.restDistance(rule, distance(r, s), s.p->d);
 		}
-		if (account && settling.holds) fracture += affine ? contactEnergyAt(r, Jc) : 0.;
+		if (account && settling.holds) law.fracture += affine ? contactEnergyAt(r, Jc) : 0.;
 		if (account && !settling.holds && !heat) // else it is in the heat
-			fracture += coldEnergyAt(r, J) + (affine ? contactEnergyAt(r, Jc) - coldEnergyAt(r, Jc) : 0.);
+			law.fracture += coldEnergyAt(r, J) + (affine ? contactEnergyAt(r, Jc) - coldEnergyAt(r, Jc) : 0.);
 		if (settling.holds) continue;
 		if (affine && heat) { // what the contacts' own volume (5) had stored is from now on part of the internal energy
 			r.m->dissipated += contactEnergyAt(r, Jc) / (r.l->cell * r.material->eos.rho0);
@@ -150,25 +151,27 @@ void McaLaw::settleVolumes(bool account)
 	unsettled.clear();
 }
 
-void McaLaw::filterVolumes(bool account)
+void Loop::filterVolumes(bool account)
 {
-	const auto exchanges = [](const Row& r) { return mca::exchangesVolume(r.m->plasticStrain, r.l->flags, r.l->factor); };
+	const auto exchanges = [](const Row& r) { return mca::exchangesVolume(r.m->plasticStrain, flagsOf(*r.l), r.l->factor); };
+	const auto weight    = [](const Row& r, int k) { return mca::automata::exchangeWeight(flagsOf(*r.l), r.l->cell / mca::Lattice::cell(r.d), k); };
 	for (Row& r : rows) {
 		r.curvature = 0;
 		if (!exchanges(r)) continue;
-		for (const Side& s : r.link)
-			r.curvature += rows[size_t(s.other)].m->volumeRatio - r.m->volumeRatio;
+		for (int k = 0; k < nLinks; k++)
+			if (r.link[k].p) r.curvature += weight(r, k) * (rows[size_t(r.link[k].other)].m->volumeRatio - r.m->volumeRatio);
 	}
 	vector<Real> change(rows.size(), 0.);
 	for (size_t i = 0; i < rows.size(); i++) {
 		const Row& r = rows[i];
 		if (!exchanges(r)) continue;
 		Real sum = 0;
-		for (const Side& s : r.link) {
-			const Row& o = rows[size_t(s.other)];
-			if (exchanges(o) && o.material == r.material && o.d == r.d) sum += r.curvature - o.curvature;
+		for (int k = 0; k < nLinks; k++) {
+			if (!r.link[k].p) continue;
+			const Row& o = rows[size_t(r.link[k].other)];
+			if (exchanges(o) && o.material == r.material && o.d == r.d) sum += weight(r, k) * (r.curvature - o.curvature);
 		}
-		change[i] = sum * mca::volumeExchange(volumeFilter, r.material->eos.c0, filterTime, r.d);
+		change[i] = sum * mca::volumeExchange(law.volumeFilter, r.material->eos.c0, law.filterTime, r.d);
 	}
 	for (size_t i = 0; i < rows.size(); i++) {
 		if (change[i] == 0) continue;
@@ -176,16 +179,17 @@ void McaLaw::filterVolumes(bool account)
 		const Real now = r.m->volumeRatio, J = now + change[i], ratio = J / now;
 		if (account) {
 			Real pairs = 0;
-			for (const Side& s : r.link)
-				pairs += mca::pairEnergy(s.p->s[s.side], s.p->tau[s.side], now, s.p->twoG);
-			coupling += (r.material->eos.heats() ? 0. : coldEnergyAt(r, now) - coldEnergyAt(r, J))
-				+ mca::deviatorEnergy(r.material->G, r.d, pairs, now, r.m->stressZZ, r.l->invN) * (1. - ratio);
+			for (int k = 0; k < nLinks; k++)
+				if (const Side& s = r.link[k]; s.p) pairs += mca::linkWeight(flagsOf(*r.l), k) * mca::pairEnergy(stressOf(*s.p, s.side), now, s.p->twoG);
+			law.coupling += (r.material->eos.heats() ? 0. : coldEnergyAt(r, now) - coldEnergyAt(r, J))
+				+ deviatorEnergyOf(*r.m, *r.l, r.material->G, pairs) * (1. - ratio);
 		}
 		r.m->volumeRatio = J;
 		r.l->factor *= ratio;
 		for (const Side& s : r.link)
-			s.p->s[s.side] *= ratio, s.p->tau[s.side] *= ratio;
+			if (s.p) setStress(*s.p, s.side, mca::scaled(stressOf(*s.p, s.side), ratio));
 	}
-	filterTime = 0;
+	law.filterTime = 0;
 }
+} // namespace MCA_SPACE
 } // namespace yade

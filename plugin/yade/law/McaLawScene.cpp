@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // McaLaw: which bodies and pairs there are in this step. Links are made when an automaton is first seen, and follow bodies that are added and erased.
-#include "McaBodies.hpp"
-#include "McaCast.hpp"
-#include "McaLaw.hpp"
+#include "../McaBodies.hpp"
+#include "../McaCast.hpp"
+#include "McaLawRows.hpp"
 #include "automata/start.hpp"
 #include <atomic>
 #include <core/InteractionLoop.hpp>
@@ -11,6 +11,7 @@
 #include <pkg/common/Sphere.hpp>
 
 namespace yade {
+namespace MCA_SPACE {
 namespace automata = mca::automata;
 using mca::nLinks;
 
@@ -52,33 +53,33 @@ namespace {
 				return;
 			}
 	}
-	bool sameLinks(const McaLawState& l, int32_t flags, const vector<int>& partner)
+	bool sameLinks(const McaLawState& l, mca::Flags flags, const vector<int>& partner)
 	{
-		if (mca::trianglesIn(l.flags) != mca::trianglesIn(flags)) return false;
+		if (mca::trianglesIn(flagsOf(l)) != mca::trianglesIn(flags)) return false;
 		for (int k = 0; k < nLinks; k++)
-			if (((l.flags ^ flags) >> k) & 1 || (((flags >> k) & 1) && l.partner[size_t(k)] != partner[size_t(k)])) return false;
+			if (mca::holds(flagsOf(l), k) != mca::holds(flags, k) || (mca::holds(flags, k) && l.partner[size_t(k)] != partner[size_t(k)])) return false;
 		return true;
 	}
 } // namespace
 
 // A scene of its own: nothing goes on from what this engine did before.
-void McaLaw::forget()
+void Loop::forget()
 {
-	filterTime = lastMove = 0, steps = brokenLinks = clamped = 0, doneAt = bookedAt = pushedAt = -1, deepest = 1;
-	plastic = viscous = lastViscous = frictional = fracture = coupling = heated = joined = 0;
-	members.clear();
+	law.filterTime = law.lastMove = 0, law.steps = law.brokenLinks = law.clamped = 0, law.doneAt = law.bookedAt = law.pushedAt = -1, law.deepest = 1;
+	law.plastic = law.viscous = law.lastViscous = law.frictional = law.fracture = law.coupling = law.heated = law.joined = 0;
+	law.members.clear();
 }
 
 // Links, slots, weights and the state of rest are those of the fast solver, when automata are added as well: new links form with those that are new only.
-void McaLaw::takeIn(Scene* scene)
+void Loop::takeIn(Scene* scene)
 {
 	for (const Row& r : rows)
 		if (!r.l) checkUntouched(r);
-	const McaBodies   bodies(*scene, seed, 2);
+	const McaBodies   bodies(*scene, law.seed, mca::dim);
 	vector<automata::Automaton> all;
 	for (const auto& a : bodies.automata) all.push_back(automata::startOf(a));
 	automata::Options o;
-	o.volumeRule = rule(), o.contacts = false, o.linkFactor = linkFactor;
+	o.volumeRule = rule(), o.contacts = false, o.linkFactor = law.linkFactor;
 	vector<automata::Automaton>  known;
 	vector<automata::LinkRecord> records;
 	for (const auto& a : all) {
@@ -86,7 +87,7 @@ void McaLaw::takeIn(Scene* scene)
 		if (!l) continue;
 		known.push_back(a);
 		automata::LinkRecord record;
-		record.id = a.id, record.flags = l->flags, record.invN = l->invN;
+		record.id = a.id, record.flags = flagsOf(*l), record.invN = l->invN;
 		std::copy(l->partner.begin(), l->partner.end(), record.partner);
 		records.push_back(record);
 	}
@@ -99,7 +100,7 @@ void McaLaw::takeIn(Scene* scene)
 		const auto old = automata::Solver::knowing(known, bodies.materials, records);
 		solver.build(all, bodies.materials, o, &old);
 	}
-	linkFactorUsed           = linkFactor;
+	law.linkFactorUsed           = law.linkFactor;
 	vector<int>            newcomers;
 	const automata::Store& S = solver.store;
 	for (int id : bodies.ids) {
@@ -114,7 +115,7 @@ void McaLaw::takeIn(Scene* scene)
 		if (!fresh && !sameLinks(l, S.flags[i], partner)) relinked.push_back(id);
 		l.flags = S.flags[i], l.partner = partner, l.invN = S.invN[i];
 		if (!fresh) continue;
-		l.triangles = r.m->triangles;
+		l.triangles = r.m->triangles, l.dimension = mca::dim;
 		l.cell = S.cell[i], l.rest = S.rest[i], l.factor = S.factor[i], l.rule = int(o.volumeRule), l.diameter = r.d;
 		r.m->volumeRatio = S.J[i], l.P = S.P[i], r.m->pressure = S.mean[i];
 	}
@@ -122,8 +123,8 @@ void McaLaw::takeIn(Scene* scene)
 	try {
 		for (const Row& r : rows)
 			for (int k = 0; k < nLinks; k++)
-				if (mca::holds(r.l->flags, k) && r.l->partner[size_t(k)] > r.id)
-					makeLink(*scene, r.id, r.l->partner[size_t(k)], k, mca::linkWeight(r.l->flags, k) < 1.);
+				if (mca::holds(flagsOf(*r.l), k) && r.l->partner[size_t(k)] > r.id)
+					makeLink(*scene, r.id, r.l->partner[size_t(k)], k, mca::linkWeight(flagsOf(*r.l), k) < 1.);
 	} catch (...) { // they stay new
 		McaPhys::linking = false;
 		for (int id : newcomers)
@@ -133,7 +134,7 @@ void McaLaw::takeIn(Scene* scene)
 	McaPhys::linking = false;
 }
 
-void McaLaw::gather(Scene* scene)
+void Loop::gather(Scene* scene)
 {
 	const auto& bodies = scene->bodies->body;
 	checkNumbers(*scene);
@@ -167,20 +168,20 @@ void McaLaw::gather(Scene* scene)
 			"body " + std::to_string(wall) + " is a wall of McaMat and body " + std::to_string(grain)
 			+ " a sphere of another material; there is no law for the two. Give the wall a FrictMat.");
 	checkMasks(masks, otherMasks);
-	if (old && linkFactorUsed > 0 && linkFactor != linkFactorUsed)
+	if (old && law.linkFactorUsed > 0 && law.linkFactor != law.linkFactorUsed)
 		throw mca::Error(
-			"McaLaw: linkFactor = " + std::to_string(linkFactor) + ", but links were made with " + std::to_string(linkFactorUsed)
+			"McaLaw: linkFactor = " + std::to_string(law.linkFactor) + ", but links were made with " + std::to_string(law.linkFactorUsed)
 			+ "; it can be chosen before the first step only. Set it back.");
 	if (fresh) takeIn(scene);
 	readMaterials(scene);
 	for (const Row& r : rows)
 		checkState(r);
-	if (steps == 0 && lastMove == 0) // an engine that goes on with what another McaLaw has moved
+	if (law.steps == 0 && law.lastMove == 0) // an engine that goes on with what another McaLaw has moved
 		for (const Row& r : rows)
-			lastMove = std::max(lastMove, r.l->moved);
+			law.lastMove = std::max(law.lastMove, r.l->moved);
 }
 
-void McaLaw::readMaterials(Scene* scene)
+void Loop::readMaterials(Scene* scene)
 {
 	vector<const McaMat*> all;
 	vector<mca::Material> constants;
@@ -199,7 +200,7 @@ void McaLaw::readMaterials(Scene* scene)
 }
 
 // Constants of a pair from its materials: when it is new, when it was loaded, and when a script has changed a material or given a body another one.
-void McaLaw::pairConstants(const Row& r, const Side& s) const
+void Loop::pairConstants(const Row& r, const Side& s) const
 {
 	McaPhys&   p = *s.p;
 	const Row &a = s.side ? rows[size_t(s.other)] : r, &b = s.side ? r : rows[size_t(s.other)];
@@ -211,21 +212,25 @@ void McaLaw::pairConstants(const Row& r, const Side& s) const
 	p.viscLinear = v.linear, p.viscQuadratic = v.quadratic;
 }
 
-void McaLaw::findLinks(Scene* scene)
+void Loop::findLinks(Scene* scene)
 {
 	for (auto& r : rows) {
-		int found = 0;
+		mca::Flags found = 0;
 		for (const auto& [id, I] : scene->bodies->body[size_t(r.id)]->intrs) {
 			auto* p = castTo<McaPhys>(I->phys.get());
 			// InteractionLoop aborts where a functor has its materials the other way round: Ip2_FrictMat_McaMat_McaPhys wants the automaton second
 			if (!I->phys && !I->geom && place[size_t(id)] < 0 && I->getId1() == r.id) I->swapOrder();
 			if (!p || !p->linked || place[size_t(id)] < 0) continue;
 			const int side = I->getId1() == r.id ? 0 : 1, k = side ? mca::Lattice::opposite(p->slot) : p->slot;
+			if (p->slot >= nLinks)
+				throw mca::Error(
+					"bodies " + std::to_string(r.id) + " and " + std::to_string(id) + ": slot = " + std::to_string(p->slot)
+					+ " of their link must be below " + std::to_string(nLinks) + "; the saved file was edited or damaged.");
 			r.link[k]      = { p, side, place[size_t(id)] };
 			pairConstants(r, r.link[k]);
-			found |= 1 << k;
+			found |= mca::Flags(1) << k;
 		}
-		const int missing = (r.l->flags & mca::linkBits) & ~found;
+		const mca::Flags missing = (flagsOf(*r.l) & mca::linkBits) & ~found;
 		if (!missing) continue;
 		for (int k = 0; k < nLinks; k++) {
 			const int other = r.l->partner[size_t(k)];
@@ -233,13 +238,13 @@ void McaLaw::findLinks(Scene* scene)
 			if (other >= 0 && size_t(other) < place.size() && place[size_t(other)] >= 0)
 				throw mca::Error(
 					"automata " + std::to_string(r.id) + " and " + std::to_string(other)
-					+ " are linked, but their interaction is gone in step " + std::to_string(steps)
+					+ " are linked, but their interaction is gone in step " + std::to_string(law.steps)
 					+ ". Something has erased it (O.interactions.clear?); load the last saved state.");
 			if (other >= 0 && size_t(other) < place.size() && scene->bodies->body[size_t(other)])
 				throw mca::Error(
 					"body " + std::to_string(other) + " is linked to automaton " + std::to_string(r.id)
 					+ " but is no automaton any more; give it back its McaMat, Sphere and state, or erase it.");
-			r.l->flags = mca::withoutTriangles(r.l->flags & ~mca::slotBits(k)) | mca::exposedBit; // its partner was erased
+			r.l->flags = mca::withoutTriangles(flagsOf(*r.l) & ~mca::slotBits(k)) | mca::exposedBit; // its partner was erased
 			r.l->partner[size_t(k)] = -1;
 			relinked.push_back(r.id);
 		}
@@ -247,7 +252,7 @@ void McaLaw::findLinks(Scene* scene)
 }
 
 // Who has lost or got links because bodies were erased or added keeps the volume that it had, measured by the links that it has now.
-void McaLaw::keepVolumes(Scene* scene)
+void Loop::keepVolumes(Scene* scene)
 {
 	if (relinked.empty()) return;
 	std::sort(relinked.begin(), relinked.end());
@@ -260,53 +265,60 @@ void McaLaw::keepVolumes(Scene* scene)
 		keepVolume(i, rows[size_t(i)].m->volumeRatio);
 	}
 	relinked.clear();
-	if (doneAt == scene->iter)
-		doneAt = -1, lastMove = 0; // a step that was stopped half-way: its strain is in the stresses, pressures are not those of the links now
+	if (law.doneAt == scene->iter)
+		law.doneAt = -1, law.lastMove = 0; // a step that was stopped half-way: its strain is in the stresses, pressures are not those of the links now
 }
 
 namespace {
-	Vector3r placeOf(const State& s)
+	/// The turn that leads from one orientation to another, the shorter way round [rad].
+	Vector3r turnBetween(const Quaternionr& from, const Quaternionr& to)
 	{
-		return Vector3r(s.se3.position[0], s.se3.position[1], 2. * std::atan2(s.se3.orientation.z(), s.se3.orientation.w()));
+		Quaternionr q = to * from.conjugate();
+		if (q.w() < 0) q.coeffs() *= -1.;
+		return angleOf(q, 3);
 	}
-	/// From one place to another, the shorter way round.
-	Vector3r way(const Vector3r& from, const Vector3r& to)
+	/// Whether two vectors agree, but for a share of their lengths and for round-off.
+	bool same(const Vector3r& a, const Vector3r& b, Real share, Real round) { return (a - b).norm() <= share * (a.norm() + b.norm()) + round; }
+	/// What the last move was made with: `now` as always, or put elsewhere by a script with the velocity it had; else what was expected, or made if the place
+	/// was set as well.
+	Vector3r lastOf(const Vector3r& now, const Vector3r& made, const Vector3r& expected, Real round)
 	{
-		return Vector3r(to[0] - from[0], to[1] - from[1], std::remainder(to[2] - from[2], 2. * M_PI));
+		if (same(made, now, 1e-9, round) || same(now, expected, 1e-6, round)) return now;
+		return same(made, expected, 1e-6, round) ? made : expected;
 	}
+	Vector3r inDimension(Vector3r x)
+	{
+		if (mca::dim == 2) x[2] = 0;
+		return x;
+	}
+	Vector3r turning(const Vector3r& w) { return mca::dim == 2 ? Vector3r(0, 0, w[2]) : w; }
 }
 
 /// NewtonIntegrator has moved the bodies since they got the forces of this step.
-bool McaLaw::hasMoved() const
+bool Loop::hasMoved() const
 {
 	return std::any_of(rows.begin(), rows.end(), [&](const Row& r) { // not a script
-		const Vector3r meant = r.l->expected * lastMove;
-		return meant != Vector3r::Zero() && (way(r.l->from, placeOf(*r.state)) - meant).norm() <= 1e-6 * meant.norm();
+		const Vector3r meant = r.l->expected * law.lastMove, turn = r.l->expectedSpin * law.lastMove;
+		if (meant != Vector3r::Zero()) return (inDimension(r.state->se3.position - r.l->from) - meant).norm() <= 1e-6 * meant.norm();
+		const Vector3r turned = turning(turnBetween(r.l->fromOri, r.state->se3.orientation));
+		return turn.norm() > 1e-9 && (turned - turn).norm() <= 1e-6 * turn.norm();
 	});
 }
 
 /// The velocity with which the last move was made. It is that of the state unless a script has set another one since, or another place.
-void McaLaw::lastMotion(Row& r) const
+void Loop::lastMotion(Row& r) const
 {
 	const State&       s = *r.state;
 	const McaLawState& l = *r.l;
-	r.motion = Vector3r(s.vel[0], s.vel[1], s.angVel[2]);
-	r.fresh  = !(l.moved > 0);
-	if (r.fresh || !(lastMove > 0)) return;
-	const Vector3r at = placeOf(s), made = way(l.from, at) / lastMove;
-	const auto     part = [&](int first, int n) { // both components of the velocity, or the spin
-		const auto norm  = [&](const Vector3r& a) { return a.segment(first, n).norm(); };
-		const Real round = 1e-15 * (norm(at) + 1e-3 * r.d) / lastMove;
-		const auto same  = [&](const Vector3r& a, const Vector3r& b, Real share) { return norm(a - b) <= share * (norm(a) + norm(b)) + round; };
-		if (same(made, r.motion, 1e-9) || same(r.motion, l.expected, 1e-6)) return; // as always, or put elsewhere with the velocity it had
-		const Vector3r& other = same(made, l.expected, 1e-6) ? made : l.expected; // the place was set as well
-		r.motion.segment(first, n) = other.segment(first, n);
-	};
-	part(0, 2);
-	part(2, 1);
+	r.velocity = inDimension(s.vel), r.spin = turning(s.angVel);
+	r.fresh    = !(l.moved > 0);
+	if (r.fresh || !(law.lastMove > 0)) return;
+	const Vector3r at = inDimension(s.se3.position);
+	r.velocity = lastOf(r.velocity, inDimension(at - l.from) / law.lastMove, l.expected, 1e-15 * (at.norm() + 1e-3 * r.d) / law.lastMove);
+	r.spin     = lastOf(r.spin, turning(turnBetween(l.fromOri, s.se3.orientation)) / law.lastMove, l.expectedSpin, 4e-15 / law.lastMove);
 }
 
-void McaLaw::findContacts(Scene* scene)
+void Loop::findContacts(Scene* scene)
 {
 	contacts.clear();
 	const auto& bodies = scene->bodies->body;
@@ -318,7 +330,7 @@ void McaLaw::findContacts(Scene* scene)
 			if (p->wall) {
 				const auto* other = castTo<const FrictMat>(bodies[size_t(id)]->material.get());
 				if (other && (p->revision != revision || p->madeOf[0] != r.mat || p->madeOf[1] != other)) {
-					p->setWall(*r.mat, other->frictionAngle, r.d);
+					p->setWall(*r.mat, other->frictionAngle, r.d, mca::dim);
 					p->revision = revision, p->madeOf[0] = r.mat, p->madeOf[1] = other;
 				}
 				continue;
@@ -326,7 +338,7 @@ void McaLaw::findContacts(Scene* scene)
 			if (place[size_t(id)] < 0) continue;
 			const Side s { p, I->getId1() == r.id ? 0 : 1, place[size_t(id)] };
 			if (!p->active) { // a link that broke has given one of them a free side
-				if (!McaPhys::mayTouch(*bodies[size_t(r.id)], *r.l, *bodies[size_t(id)], *rows[size_t(s.other)].l)) continue;
+				if (!McaPairLaw::in(mca::dim).mayTouch(*bodies[size_t(r.id)], *r.l, *bodies[size_t(id)], *rows[size_t(s.other)].l)) continue;
 				p->startContact(distance(r, s));
 			}
 			pairConstants(r, s);
@@ -335,4 +347,5 @@ void McaLaw::findContacts(Scene* scene)
 		r.lastContact = int(contacts.size());
 	}
 }
+} // namespace MCA_SPACE
 } // namespace yade

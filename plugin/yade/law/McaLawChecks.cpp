@@ -1,82 +1,24 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // McaLaw: what it refuses before it computes. A script may change anything between steps, so all of this is looked at in every step, by comparing with what was
 // found good.
-#include "McaBodies.hpp"
-#include "McaCast.hpp"
-#include "McaLaw.hpp"
-#include <core/Omega.hpp>
+#include "../McaBodies.hpp"
+#include "../McaCast.hpp"
+#include "McaLawRows.hpp"
 #include <core/Scene.hpp>
 #include <lib/base/Logging.hpp>
 #include <pkg/common/Sphere.hpp>
 #include <sdk/newton.hpp>
 
 namespace yade {
+namespace MCA_SPACE {
 namespace {
-	template <class... Part> [[noreturn]] void refuse(const Part&... part)
-	{
-		std::ostringstream s;
-		(s << ... << part);
-		throw mca::Error(s.str());
-	}
 	bool moves(const sdk::NewtonFacts& n, int groupMask) { return n.mask <= 0 || (n.mask & groupMask); }
+	/// The axes about which automata turn: z alone in the plane.
+	constexpr int firstTurn = 3 - mca::turns;
 } // namespace
 
-mca::VolumeRule McaLaw::rule() const
-{
-	if (volumeRule == "affine") return mca::VolumeRule::affine;
-	if (volumeRule == "inversePower") return mca::VolumeRule::inversePower;
-	if (volumeRule == "meanDistance") return mca::VolumeRule::meanDistance;
-	throw mca::Error("McaLaw: volumeRule = '" + volumeRule + "' is unknown; it must be 'affine', 'inversePower' or 'meanDistance'.");
-}
-
-void McaLaw::checkOptions(const Scene& scene) const
-{
-	rule();
-	if (!(linkFactor >= 1.02 && linkFactor <= 1.5)) refuse("McaLaw: linkFactor = ", linkFactor, " must be from 1.02 to 1.5.");
-	if (!(volumeFilter >= 0 && volumeFilter <= 1)) refuse("McaLaw: volumeFilter = ", volumeFilter, " must be from 0 (off) to 1.");
-	if (scene.isPeriodic) refuse("McaLaw: O.periodic = True, but automata know no periodic cell; set O.periodic = False.");
-	if (scene.subdomain > 0) refuse("McaLaw: this is subdomain ", scene.subdomain, " of a run of yade.mpy; automata run in one process only.");
-}
-
-void McaLaw::checkEngines(const Scene& scene)
-{
-	bool same = seen.size() == scene.engines.size();
-	for (size_t i = 0; same && i < seen.size(); i++)
-		same = seen[i].first == scene.engines[i].get() && seen[i].second == scene.engines[i]->dead;
-	if (same) return;
-	seen.clear(), newtons.clear();
-	const char* order[] = { "McaLaw", "InteractionLoop", "McaForces", "NewtonIntegrator" };
-	int         at[4] = { -1, -1, -1, -1 }, resetter = -1, place = 0;
-	bool        collides = false;
-	for (const auto& e : scene.engines) {
-		place++;
-		if (!e || e->dead) continue;
-		const string name = dynamic_cast<const McaLaw*>(e.get()) ? "McaLaw" : e->getClassName(); // by whichever of its names
-		if (name == "McaEngine") refuse("O.engines has McaEngine and McaLaw; an automaton can be moved by one of them only.");
-		if (name == "ForceResetter") resetter = place;
-		if (name == "NewtonIntegrator") newtons.push_back(e.get());
-		collides = collides || Omega::instance().isInheritingFrom_recursive(name, "Collider");
-		for (int k = 0; k < 4; k++) {
-			if (name != order[k]) continue;
-			if (k < 3 && at[k] > 0) refuse("McaLaw: O.engines has ", name, " twice; each automaton would be computed twice. Leave one.");
-			at[k] = place;
-		}
-	}
-	for (int k = 0; k < 4; k++)
-		if (at[k] < 0 || (k > 0 && at[k] < at[k - 1]))
-			refuse("McaLaw: O.engines must hold McaLaw, InteractionLoop, McaForces and NewtonIntegrator in this order, none of them dead; ",
-			       order[k], " is missing or misplaced.");
-	if (resetter < 0 || (resetter > at[2] && resetter < at[3]))
-		refuse("McaLaw: O.engines needs ForceResetter, not dead, before McaForces (it stands first); without it forces add up from step to step.");
-	if (!collides)
-		refuse("McaLaw: O.engines needs a collider, not dead (InsertionSortCollider with Bo1_Sphere_Aabb(aabbEnlargeFactor=1.4)); without it automata "
-		       "pass through each other.");
-	for (const auto& e : scene.engines)
-		seen.emplace_back(e.get(), e && e->dead);
-}
-
 // What a body must have to be an automaton of this loop at all.
-McaState& McaLaw::checkBody(const Scene& scene, const Body& b) const
+McaState& Loop::checkBody(const Scene& scene, const Body& b) const
 {
 	if (b.clumpId != Body::ID_NONE)
 		refuse("body ", b.id, ": an automaton cannot be a member of a clump; automata of one body are linked (O.bodies.releaseFromClump).");
@@ -89,7 +31,7 @@ McaState& McaLaw::checkBody(const Scene& scene, const Body& b) const
 	const auto      size = [](const Vector3r& a) { return std::fabs(a[0]) + std::fabs(a[1]) + std::fabs(a[2]); };
 	const auto      need = [&](const char* what, const Vector3r& a, const char* unit) {
                 if (!(size(a) < 1e300))
-                        refuse("body ", b.id, ": ", what, " (", a[0], ", ", a[1], ", ", a[2], ") ", unit, " is not finite in step ", steps,
+                        refuse("body ", b.id, ": ", what, " (", a[0], ", ", a[1], ", ", a[2], ") ", unit, " is not finite in step ", law.steps,
 			            "; no force can be computed from it. Give finite numbers.");
 	};
 	if (size(x) + size(v) + size(w) < 1e300) return *m;
@@ -98,7 +40,7 @@ McaState& McaLaw::checkBody(const Scene& scene, const Body& b) const
 }
 
 // A body whose material, shape or state was taken away must not drop out of the bodies that it is linked to.
-void McaLaw::checkOther(const Body& b) const
+void Loop::checkOther(const Body& b) const
 {
 	const auto* m = b.state ? castTo<const McaState>(b.state.get()) : nullptr;
 	const char* lacks = !b.material || !castTo<const McaMat>(b.material.get()) ? "no McaMat" : !b.shape ? "no shape" : "no Sphere as its shape";
@@ -110,7 +52,7 @@ void McaLaw::checkOther(const Body& b) const
 }
 
 // An automaton that is new here has its state of rest computed from its neighbours: what another loop or the script has left in it would be lost.
-void McaLaw::checkUntouched(const Row& r) const
+void Loop::checkUntouched(const Row& r) const
 {
 	const McaState& m = *r.m;
 	if (m.links > 0 || m.brokenLinks > 0)
@@ -123,6 +65,9 @@ void McaLaw::checkUntouched(const Row& r) const
 			       " before its first step is a result of the law and cannot be given; set it to ", rest,
 			       ". plasticStrain, temperature and strength can.");
 	};
+	if (m.mirrors != 0)
+		refuse("body ", r.id, ": state.mirrors = ", m.mirrors, " must be 0: planes of symmetry are of bodies in space that McaEngine moves; McaLaw ",
+		       mca::dim == 2 ? "has these in plane strain." : "takes whole bodies. Make them without mirror=, or use McaEngine.");
 	if (!(std::fabs(m.se3.orientation.coeffs().squaredNorm() - 1.) < 0.1))
 		refuse("body ", r.id, ": ori is no rotation; it must be a quaternion of norm 1.");
 	need("pressure", m.pressure, 0, " Pa"), need("volumeRatio", m.volumeRatio, 1, ""), need("stressZZ", m.stressZZ, 0, " Pa"),
@@ -130,13 +75,13 @@ void McaLaw::checkUntouched(const Row& r) const
 }
 
 // What a script may have changed in an automaton that goes on.
-void McaLaw::checkState(const Row& r) const
+void Loop::checkState(const Row& r) const
 {
 	const McaState&    m = *r.m;
 	const McaLawState& l = *r.l;
 	if (l.rule != int(rule())) {
 		const char* names[] = { "affine", "inversePower", "meanDistance" };
-		refuse("McaLaw: volumeRule = '", volumeRule, "', but the links of body ", r.id, " were made with '", names[l.rule],
+		refuse("McaLaw: volumeRule = '", law.volumeRule, "', but the links of body ", r.id, " were made with '", names[l.rule],
 		       "'; the rule can be chosen before the first step only. Set it back.");
 	}
 	if (r.d != l.diameter)
@@ -145,15 +90,17 @@ void McaLaw::checkState(const Row& r) const
 	// heavier is slower, lighter would be beyond the stable step
 	const Real rho = r.material->eos.rho0, least = 0.999 * l.cell * rho, most = 2. * rho * mca::Lattice::cell(r.d);
 	if (!(m.mass >= least && m.mass <= most))
-		refuse("body ", r.id, ": mass ", m.mass, " kg/m must be from ", l.cell * rho, " (density times the area it stands for) to ", most,
+		refuse("body ", r.id, ": mass ", m.mass, perThickness(" kg/m", " kg"), " must be from ", l.cell * rho, " (density times the ",
+		       perThickness("area", "volume"), " it stands for) to ", most,
 		       " (two full cells); a lighter one is not stable at the step that its links allow.");
-	if (!(m.blockedDOFs & State::DOF_RZ) && !(m.inertia[2] > 0 && std::isfinite(m.inertia[2])))
-		refuse("body ", r.id, ": inertia ", m.inertia[2], " kg m must be finite and above zero, or block the rotation.");
+	for (int axis = firstTurn; axis < 3; axis++)
+		if (freeTurns(m)[size_t(axis)] && !(m.inertia[axis] > 0 && std::isfinite(m.inertia[axis])))
+			refuse("body ", r.id, ": inertia ", m.inertia[axis], perThickness(" kg m", " kg m2"),
+			       " must be finite and above zero, or block the rotation.");
 	const auto need = [&](const char* name, Real value, bool ok, const char* range) {
 		if (!ok) refuse("body ", r.id, ": state.", name, " = ", value, " must be ", range, ".");
 	};
-	if (m.mirrors != 0)
-		refuse("body ", r.id, ": state.mirrors = ", m.mirrors, " must be 0: planes of symmetry are of bodies in space, this law is in plane strain.");
+	if (m.mirrors != 0) refuse("body ", r.id, ": state.mirrors = ", m.mirrors, " was changed; it must be 0: planes of symmetry are of McaEngine.");
 	if (m.triangles != l.triangles)
 		refuse("body ", r.id, ": state.triangles = ", m.triangles, " was changed (from ", l.triangles,
 		       "); where a body ends is found when it is taken in. Set it back.");
@@ -173,10 +120,10 @@ void McaLaw::checkState(const Row& r) const
 }
 
 // The stock collider skips two bodies whose masks have no bit in common, and NewtonIntegrator those without a bit of its own mask.
-void McaLaw::checkMasks(const MaskTable& automata, const MaskTable& others)
+void Loop::checkMasks(const MaskTable& automata, const MaskTable& others)
 {
 	vector<std::pair<Real, int>> facts;
-	for (const Engine* n : newtons) {
+	for (const Engine* n : law.integrators()) {
 		const auto f = sdk::newtonFacts(*n);
 		facts.emplace_back(f.damping, f.mask);
 		if (f.damping == 0) continue;
@@ -214,4 +161,5 @@ void McaLaw::checkMasks(const MaskTable& automata, const MaskTable& others)
 						<< ") have no bit in common in their masks: YADE lets them pass through each other.");
 	newtonsGood = facts, automataGood = automata, othersGood = others;
 }
+} // namespace MCA_SPACE
 } // namespace yade

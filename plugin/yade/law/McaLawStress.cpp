@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// McaLaw: volume, pressure, pair stresses and yield of one automaton, from its neighbours: loops over its pairs that call the kernels.
+#include "McaLawRows.hpp"
+#include <kernels/automaton/limit.hpp>
+
+namespace yade {
+namespace MCA_SPACE {
+using mca::nLinks;
+using mca::VolumeRule;
+
+namespace {
+	Real square(Vec r) { return mca::dot(r, r); }
+	template <class F> auto byRule(int rule, F&& f) { return mca::dispatch(VolumeRule(rule), f); }
+} // namespace
+
+void Loop::contactVolume(Row& r)
+{
+	Real sum         = 0;
+	r.nearestContact = 1;
+	for (int c = r.firstContact; c < r.lastContact; c++) {
+		const Side& s  = contacts[size_t(c)];
+		McaPhys&    p  = *s.p;
+		const Real  r2 = square(between(r, s)), rest = p.rest[s.side];
+		if (p.pushes(s.side, r2)) {
+			sum += byRule(r.l->rule, [&](auto rule) { return mca::volumeTerm<mca::ofContacts(rule.value)>(rest, r2); });
+			r.nearestContact = std::min(r.nearestContact, r2 / (rest * rest));
+		}
+		p.rest[s.side] = mca::restAfter(rest, r2, p.d);
+	}
+	r.l->contactSum = sum;
+}
+
+void Loop::volume(Row& r, bool withContacts)
+{
+	mca::dispatch(r.material->eos.kind, [&](auto kind) { volumeBy<kind.value>(r, withContacts); });
+}
+
+template <mca::EosKind kind> void Loop::volumeBy(Row& r, bool withContacts)
+{
+	McaLawState&                    l = *r.l;
+	const mca::VolumeConstants<kind> c(*r.material, r.d);
+	const Real                 Jo = r.m->volumeRatio, contactSum = withContacts ? l.contactSum : 0.;
+	const mca::PressureState        before { l.P, r.m->dissipated };
+	const bool                      outline = mca::trianglesIn(flagsOf(l)) != 0;
+	LinkSums                        sums;
+	Real                            nearest2 = 1e300, J = 1;
+	for (int k = 0; k < nLinks; k++) {
+		const Vec x = r.link[k].p ? between(r, r.link[k]) : Vec {};
+		nearest2    = std::min(nearest2, r.link[k].p ? square(x) : c.d2);
+		sums.add(flagsOf(l), k, x);
+	}
+	sums.complete(l);
+	const auto         step = [&](bool ofLinks) { return mca::pressureStep(c, J, Jo, before, ofLinks); };
+	mca::PressureState now  = before;
+	byRule(l.rule, [&](auto rule) {
+		if constexpr (rule.value == VolumeRule::affine) {
+			J   = mca::affineRatio(c, sums.F, l.factor, l.rest, contactSum);
+			now = step(l.factor > 0);
+			l.push = matrixOf(mca::affinePush(c, sums.F, l.factor));
+			const Real slope = mca::volumeSlope(c, sums.F, sums.directions, l.factor);
+			r.stiff          = mca::affineStiffness(c, J, slope, nearest2, outline);
+			if (law.lastMove > 0) {
+				const mca::BulkViscosity viscosity(*r.material, r.d, 1. / law.lastMove);
+				l.viscous = l.factor > 0 ? viscosity.pressure(mca::dilation(J, Jo), slope, mca::tangent<kind>(c.eos, J - 1.)) : 0.;
+			}
+			if (!withContacts) return;
+			const Real Jc = mca::contactRatio(contactSum), cell = mca::contactCell(r.d, l.cell, l.factor); // contacts have a volume of their own
+			l.pressureShare = mca::pressureShare<mca::ofContacts(rule.value)>(mca::pressure<kind>(c.eos, Jc - 1.), Jc, cell * (1. / nLinks));
+			r.stiff         = std::max(r.stiff, mca::stiffness(c, Jc) * (cell / l.cell));
+		} else {
+			Real sum = 0;
+			for (int k = 0; k < nLinks; k++)
+				if (r.link[k].p)
+					sum += mca::linkWeight(flagsOf(l), k) * mca::volumeTerm<rule.value>(r.link[k].p->d, square(between(r, r.link[k])));
+			J       = mca::volumeRatio<rule.value>((sum + contactSum - l.rest) * l.invN);
+			now     = step(true);
+			l.pressureShare = mca::pressureShare<rule.value>(now.P, J, l.cell * l.invN);
+			r.stiff = mca::stiffness(c, J);
+		}
+	});
+	l.dTheta         = mca::dilation(J, Jo);
+	r.m->volumeRatio = J, l.P = now.P, r.m->dissipated = now.e;
+	r.clampedNow  = mca::clamped(c.eos, J - 1.);
+	r.bad         = !mca::validVolume(J);
+	r.turning     = outline && l.rule == int(VolumeRule::affine) ? mca::turningAtOutlines * J : J;
+	r.nearestLink = nearest2 / c.d2;
+	r.closing     = law.lastMove > 0 ? std::max(-l.dTheta, Real(0)) * r.d / law.lastMove : 0.;
+}
+
+/// (7)-(8): of this side of a pair, before yield; dilation: pairDilation().
+Trial Loop::trial(const Row& r, const Side& s, Stress old, Real dilation) const
+{
+	const Row& o = rows[size_t(s.other)];
+	const Real on   = r.fresh || o.fresh ? 0. : law.lastMove;
+	const auto spin = mca::pairSpin(turnOf(r.spin), turnOf(o.spin), mca::arm(r.d, o.d), on);
+	return trialOf(old, between(r, s), (vec(o.velocity) - vec(r.velocity)) * on, spin, dilation, s.p->twoG);
+}
+
+// Trial stresses (7)-(9) of this side of all pairs, radial return (10)-(11), friction, fracture criteria.
+void Loop::stress(Row& r)
+{
+	McaLawState&         l = *r.l;
+	McaState&            m = *r.m;
+	const mca::Material& material = *r.material;
+	const Real           J = m.volumeRatio, dt = law.lastMove, threeG = 3. * material.G, perOldJ = mca::perOldRatio(l.dTheta, J);
+	const bool           affine = l.rule == int(VolumeRule::affine);
+	mca::PairSums<Real>  sums;
+	const auto dilationOf = [&](const Side& s, mca::DilationShares share) { return mca::pairDilation(l.dTheta, rows[size_t(s.other)].l->dTheta, share); };
+	const auto           old = [&](const Side& s) { return mca::scaled(stressOf(*s.p, s.side), perOldJ); };
+	for (int k = 0; k < nLinks; k++) {
+		const Side& s = r.link[k];
+		if (!s.p) continue;
+		const Real weight = mca::linkWeight(flagsOf(l), k), dilation = dilationOf(s, affine ? mca::ofOwn : mca::ofBoth);
+		const auto now = trial(r, s, old(s), dilation);
+		setStress(*s.p, s.side, now.trial);
+		add(sums, now, dilation, weight, weight);
+	}
+	for (const Side& s : r.lost) { // what they held goes on in their contacts
+		const Real dilation = dilationOf(s, mca::ofOwn);
+		Trial      gone     = trial(r, s, old(s), dilation);
+		gone.trial          = {};
+		add(sums, gone, dilation, 1., 0.);
+	}
+	vector<Stress> held; // stresses of the contacts before the step
+	Real           ofContacts = 0, bothOfContacts = 0;
+	for (int c = r.firstContact; c < r.lastContact; c++) {
+		const Side& s     = contacts[size_t(c)];
+		const auto  now   = trial(r, s, old(s), dilationOf(s, mca::ofBoth));
+		const bool  touch = s.p->touching(square(between(r, s)));
+		held.push_back(touch ? now.before : untouched(now));
+		setStress(*s.p, s.side, touch ? now.trial : Stress {});
+		if (touch) ofContacts += mca::square(now.trial), bothOfContacts += mca::product(now.before, now.trial);
+	}
+	sums.square += ofContacts, sums.both += bothOfContacts;
+
+	const Deviator deviator(m, material.G, l.dTheta);
+	const Real     sigma = deviator.equivalent(sums.square * l.invN);
+	mca::Return back { 1., 0. };
+	mca::dispatch(material.yield.kind, [&](auto kind) {
+		back = mca::radialReturn<kind.value>(material.yield, sigma, m.plasticStrain, m.temperature, threeG, dt);
+	});
+	deviator.scale(m, back.scale);
+	m.plasticStrain += back.dEqps;
+	if (material.yield.heats()) m.temperature = mca::warmed(material.yield, m.temperature, sigma, back);
+	r.heated = 0;
+	if (material.eos.heats()) {
+		const Real q = mca::plasticHeat(J, sigma, back, 1. / material.eos.rho0);
+		m.dissipated += q;
+		r.heated = q * l.cell * material.eos.rho0;
+	}
+	const auto work = deviator.work(m, sums, sigma, back, l.dTheta, threeG, mca::Lattice::cell(r.d) / nLinks, l.invN, affine && l.factor > 0);
+	r.plastic = work.plastic, r.coupling = work.coupling, r.friction = 0;
+
+	const Real scale = back.scale * J;
+	for (const Side& s : r.link)
+		if (s.p) setStress(*s.p, s.side, mca::scaled(stressOf(*s.p, s.side), scale));
+	for (int c = r.firstContact; c < r.lastContact; c++)
+		contactFriction(r, contacts[size_t(c)], held[size_t(c - r.firstContact)], scale);
+	finishPressure(r);
+	m.equivalentStress = deviator.equivalentAfter(m, back.scale, sums.square * l.invN);
+	if (material.fracture.active())
+		l.criterion = mca::criterion(mca::Criteria(material.fracture), m.plasticStrain, m.pressure, m.equivalentStress, m.strength);
+}
+
+/// (5f), and the push of the affine rule with it and with the viscous pressure.
+void Loop::finishPressure(Row& r) const
+{
+	McaLawState& l       = *r.l;
+	Real         normals = 0;
+	for (int k = 0; k < nLinks; k++)
+		if (const Side& s = r.link[k]; s.p) normals += mca::linkWeight(flagsOf(l), k) * mca::normalStress(stressOf(*s.p, s.side), between(r, s));
+	const bool affine = l.rule == int(VolumeRule::affine) && l.factor > 0;
+	const Real acting = affine ? meanPressureOf(*r.m, l, normals, r.material->eos.bulkModulus()) : l.P, sum = acting + l.viscous;
+	r.m->pressure     = shownPressureOf(l, acting);
+	l.viscousShare = sum != 0 ? l.viscous / sum : 0.;
+	l.push *= sum * l.cell / pushShare(l);
+}
+
+// No tension, Coulomb friction; what this side dissipates.
+void Loop::contactFriction(Row& r, const Side& s, Stress before, Real scale)
+{
+	McaPhys&    p     = *s.p;
+	const Row&  o     = rows[size_t(s.other)];
+	const Vec   x     = between(r, s);
+	const Real  r2    = square(x);
+	const auto  press = [&](const McaLawState& l, int side) {
+                return p.pushes(side, r2)
+			 ? l.pressureShare * byRule(l.rule, [&](auto rule) { return mca::pressureShape<mca::ofContacts(rule.value)>(p.rest[side], 1. / r2); })
+			 : 0.;
+	};
+	const auto  side  = contactSideOf(
+		before, stressOf(p, s.side), x, press(*r.l, s.side) + press(*o.l, 1 - s.side), r2, p.d, p.friction, r.m->volumeRatio, scale, p.touching(r2));
+	const auto             after = mca::afterFriction(side);
+	const auto             over  = [](Real a) { return a > 0 ? 1. / a : 0.; };
+	const auto             work  = mca::contactWork(side, after, over(p.twoG), over(r.material->G), r.l->dTheta, o.l->dTheta);
+	setStress(p, s.side, after);
+	r.friction += work.friction, r.coupling += work.coupling, r.plastic += work.plastic;
+}
+} // namespace MCA_SPACE
+} // namespace yade
