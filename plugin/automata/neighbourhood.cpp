@@ -190,7 +190,7 @@ std::vector<int32_t> Solver::exposed() const
 void Solver::search()
 {
 	Store& S = store;
-	if (counters.steps >= lastSort + 2000) sortInSpace();
+	if (counters.steps >= lastSort + 2000 && unsettled.empty()) sortInSpace(); // those go by places
 	for (int32_t i : contacts.rowOwner) // entries of owners that may have none any more
 		scratch.eachArray([&](auto& v, Presence) {
 			if (!v.empty()) v[i] = 0.;

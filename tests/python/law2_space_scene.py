@@ -17,7 +17,7 @@ def engines(road, dt, **newton):
 	O.engines = [yadeClass('McaEngine')(adaptive=False)] if road == 'engine' else law2Engines('affine', **newton)
 
 
-def impact(speed=500., rim='full', exactMass=False, orientation=((1, 0.3, 0.1), (0.2, 1, -0.4)), **steel):
+def impact(speed=500., rim='full', exactMass=False, orientation=((1, 2, 3), (3, 0, -1)), **steel):
 	"""A ball flies obliquely onto a block of another orientation: contact, plastic flow, fracture. Spacing 1 mm; returns the ids.
 
 	exactMass: mass and inertia are powers of two, so that dividing by them (NewtonIntegrator) and multiplying with their inverses (McaEngine) round alike.

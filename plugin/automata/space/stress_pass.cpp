@@ -33,8 +33,12 @@ namespace {
 			for (int k = 0; k < nLinks; k++) {
 				const int32_t* j     = V.others(k, g);
 				const Motion   other = gatherMotion(V.node, j);
+				double*        at    = V.tractions(k, g);
+				const Vec<v8>  old   = gatherTraction(at, inRow) * perOldJ;
 				const m8       on    = holding(bits, k);
-				const Vec<v8>  r     = choose<intact>(on, other.position - x, ofLength(splat(V.d)));
+				// a link that has just broken still has its traction: the account asks along which line it lay
+				const m8       lies  = account && !intact ? on | (dot(old, old) > 0.) : on;
+				const Vec<v8>  r     = choose<intact>(lies, other.position - x, ofLength(splat(V.d)));
 				Vec<v8>        spin  = chord((w + other.omega) * splat(0.5 * dt));
 				v8             stiff = splat(2. * V.material.G);
 				if (mixed) // unlike arms; series rule for the stiffness
@@ -44,14 +48,13 @@ namespace {
 						for (int c = 0; c < dim; c++) spin[c][l] = s[c];
 						stiff[l] = S.pairTwoG(V.block.species, j[l], q);
 					}
-				double*       at     = V.tractions(k, g);
 				const auto    motion = pairMotion(r, (other.velocity - v) * splat(dt), spin);
-				const Vec<v8> old    = gatherTraction(at, inRow) * perOldJ;
 				const auto    step   = advance(old, motion, dth, stiff);
 				const Vec<v8> now    = choose<intact>(on, step.trial, Vec<v8> {});
 				scatter4(at, tractionSize, now[0], now[1], now[2], none);
 				const v8 weight = weights<intact>(bits, k);
-				add<account>(sums, old, Advance<v8> { now, step.before }, motion.normal, dth, weight, choose<intact>(on, weight, none));
+				add<account>(
+					sums, old, Advance<v8> { now, step.before }, motion.normal, dth, choose<intact>(lies, weight, none), choose<intact>(on, weight, none));
 				normals += weight * dot(now, r) * (1. / root(dot(r, r)));
 			}
 			storeSums(sums, normals, account, g, to);
