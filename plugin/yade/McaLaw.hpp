@@ -26,8 +26,8 @@ public:
 	py::list links() const;
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(McaLaw, McaSolverEngine,
-		"First half of the law of movable cellular automata in YADE's loop (plane strain x, y, or space): volume and pressure of every automaton, trial "
-		"stresses of its pairs, radial return, fracture "
+		"First half of the law of movable cellular automata in YADE's loop (plane strain x, y, or space): volume and pressure of every automaton, "
+		"trial stresses of its pairs, radial return, fracture "
 		"and contact friction, by the same formulas, at the same steps and in the same order as :yref:`McaEngine`, written plainly. O.engines: "
 		"ForceResetter, collider "
 		"(Bo1_Sphere_Aabb with aabbEnlargeFactor 1.4), McaLaw, InteractionLoop (Ig2_Sphere_Sphere_ScGeom with interactionDetectionFactor 1.4, "
@@ -53,8 +53,8 @@ public:
 		    "step"))
 		((Real, filterTime, 0, Attr::hidden, "since the last exchange of volume [s]"))
 		((int, seed, 1, , "seed of the scattered strengths; read when automata are taken in: in the first step and when bodies are added"))
-		((int, dimension, 0, Attr::readonly, "2 in plane strain, 3 in space: that of the bodies; 0 before the first step; output. In space energies are in "
-		    "J, not J/m"))
+		((int, dimension, 0, Attr::readonly, "2 in plane strain, 3 in space: that of the bodies; 0 before the first step; output. In space energies "
+		    "are in J, not J/m"))
 		((long, steps, 0, Attr::readonly, "steps done; output"))
 		((Real, dtLimit, std::numeric_limits<Real>::infinity(), Attr::readonly, "largest stable time step at the present state [s]; output"))
 		((int, stiffest, -1, Attr::readonly, "body that limits the time step; output"))

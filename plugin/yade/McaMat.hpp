@@ -25,8 +25,8 @@ public:
 		((Real, dTheta, 0, Attr::readonly, "last increment of the volume strain [-]"))
 		((Real, viscous, 0, Attr::readonly, "viscous pressure of the last move [Pa]"))
 		((Real, viscousShare, 0, Attr::readonly, "share of the viscous pressure in push [-]"))
-		((Matrix3r, push, Matrix3r::Zero(), Attr::readonly, "affine rule: link k is pushed by push e_k, at outlines by push c_k (5g), in the frame of the "
-		    "packing [N/m]"))
+		((Matrix3r, push, Matrix3r::Zero(), Attr::readonly, "affine rule: link k is pushed by push e_k, at outlines by push c_k (5g), in the frame of "
+		    "the packing [N/m]"))
 		((Real, pressureShare, 0, Attr::readonly, "pressure share of rule (6), of contacts in the affine rule [N/m]"))
 		((int, rule, 0, Attr::readonly, "volume rule: 0 affine, 1 inversePower, 2 meanDistance"))
 		((Real, contactSum, 0, Attr::readonly, "volume terms of the contacts [-]"))

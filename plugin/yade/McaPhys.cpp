@@ -80,8 +80,8 @@ void McaLawState::postLoad(McaLawState&)
 {
 	const bool known = dimension == 2 || dimension == 3;
 	if (!known || !(partner.empty() && flags == 0 ? true : McaPairLaw::in(dimension).fits(*this)) || rule < 0 || rule > 2)
-		throw mca::Error("McaLawState: dimension = " + std::to_string(dimension) + ", flags = " + std::to_string(flags) + ", rule = " + std::to_string(rule)
-		                 + " and " + std::to_string(partner.size())
+		throw mca::Error("McaLawState: dimension = " + std::to_string(dimension) + ", flags = " + std::to_string(flags) + ", rule = "
+		                 + std::to_string(rule) + " and " + std::to_string(partner.size())
 		                 + " partners in the file are no links of an automaton; the file is damaged or was edited.");
 }
 
@@ -128,7 +128,8 @@ void Ip2_McaMat_McaMat_McaPhys::go(const shared_ptr<Material>& m1, const shared_
 	const Real da = 2. * sa->radius, db = 2. * sb->radius;
 	p->d     = 0.5 * (da + db);
 	p->arm = da / (da + db);
-	if (!la || !lb || McaPhys::linking || !McaPairLaw::in(la->dimension).mayTouch(A, *la, B, *lb)) return; // McaLaw takes it from here, and gives the pair its constants
+	// McaLaw takes it from here, and gives the pair its constants
+	if (!la || !lb || McaPhys::linking || !McaPairLaw::in(la->dimension).mayTouch(A, *la, B, *lb)) return;
 	checkFound(now, A, B, p->d, la->dimension);
 	p->startContact(between(A, B, la->dimension).norm());
 }
@@ -143,7 +144,8 @@ void Ip2_FrictMat_McaMat_McaPhys::go(const shared_ptr<Material>& m1, const share
 	const auto*               sphere    = castTo<Sphere>(automaton.shape.get());
 	const shared_ptr<McaPhys> p(new McaPhys);
 	I->phys = p;
-	if (sphere) p->setWall(*m, static_cast<const FrictMat&>(first ? *m2 : *m1).frictionAngle, 2. * sphere->radius, dimensionOf(lawState(automaton), nullptr));
+	const Real angle = static_cast<const FrictMat&>(first ? *m2 : *m1).frictionAngle;
+	if (sphere) p->setWall(*m, angle, 2. * sphere->radius, dimensionOf(lawState(automaton), nullptr));
 }
 
 namespace {

@@ -99,8 +99,8 @@ public:
 	YADE_CLASS_BASE_DOC(Ip2_FrictMat_McaMat_McaPhys, IPhysFunctor,
 		"Makes :yref:`McaPhys` of an automaton and a facet, wall, box or grain of FrictMat: a penalty contact of the automaton's moduli, kn = (K + "
 		"4G/3) S0/(d/2) and "
-		"ks = G S0/(d/2) [N/m per m, in space N/m], with the smaller friction of both. The other body is taken as rigid. Either order of the two bodies will do. "
-		"The materials are read when the pair is made, "
+		"ks = G S0/(d/2) [N/m per m, in space N/m], with the smaller friction of both. The other body is taken as rigid. "
+		"Either order of the two bodies will do. The materials are read when the pair is made, "
 		"and anew when a McaMat has changed.")
 	// clang-format on
 };

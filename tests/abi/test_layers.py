@@ -102,10 +102,10 @@ def test_kernelsHaveValuesInValuesOut(folder):
 #: functions that a formula of the law would need -> where else they may stand, with the reason
 ELSEWHERE = {
         'yade/McaBodies.cpp': 'scattered strengths',
-        'yade/McaLaw.cpp': 'distances in messages and checks',
+        'yade/McaLawLoop.cpp': 'distances in messages and checks',
         'yade/McaLawFracture.cpp': 'a distance',
-        'yade/McaLaw.hpp': 'a distance',
-        'yade/McaPhys.cpp': 'unit normal for YADE',
+        'yade/McaLawRows.hpp': 'a distance',
+        'yade/McaPhysPairs.cpp': 'unit normal for YADE',
         'automata/build.cpp': 'distances of the packing',
         'automata/fracture.cpp': 'a distance',
         'automata/step.cpp': 'distances in messages and checks',

@@ -105,7 +105,7 @@ def test_gravityAndRest(plugin):
 	scene.engines('law2', 2e-8, gravity=(0, -9.81, 0))
 	O.run(50, True)
 	v = np.array([O.bodies[i].state.vel for i in ids])
-	assert v[:, 1] == pytest.approx(-9.81 * 50 * 2e-8, rel=1e-9) and abs(v[:, [0, 2]]).max() < 1e-20
+	assert v[:, 1] == pytest.approx(-9.81 * 50 * 2e-8, rel=1e-6) and abs(v[:, [0, 2]]).max() < 1e-10
 
 
 def test_saveAndLoad(plugin, tmp_path):

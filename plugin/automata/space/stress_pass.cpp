@@ -54,7 +54,8 @@ namespace {
 				scatter4(at, tractionSize, now[0], now[1], now[2], none);
 				const v8 weight = weights<intact>(bits, k);
 				add<account>(
-					sums, old, Advance<v8> { now, step.before }, motion.normal, dth, choose<intact>(lies, weight, none), choose<intact>(on, weight, none));
+					sums, old, Advance<v8> { now, step.before }, motion.normal, dth, choose<intact>(lies, weight, none),
+					choose<intact>(on, weight, none));
 				normals += weight * dot(now, r) * (1. / root(dot(r, r)));
 			}
 			storeSums(sums, normals, account, g, to);

@@ -172,8 +172,8 @@ void Loop::bookEnergies(Scene* scene)
 	const Energies e     = energies(*scene);
 	const Real     total = e.kinetic + e.centre + e.volumetric + e.deviatoric + law.plastic + law.viscous + law.frictional + law.fracture + law.coupling;
 	// bodies were added or erased since the last step: the sum is kept over a step, so what is missing or more is theirs
-	const bool changed =
-		law.members.size() != rows.size() || !std::equal(rows.begin(), rows.end(), law.members.begin(), [](const Row& r, int id) { return r.id == id; });
+	const auto is      = [](const Row& r, int id) { return r.id == id; };
+	const bool changed = law.members.size() != rows.size() || !std::equal(rows.begin(), rows.end(), law.members.begin(), is);
 	if (changed && !law.members.empty() && law.bookedAt == scene->iter - 1) law.joined += total - law.lastTotal;
 	law.lastTotal = total, law.bookedAt = scene->iter;
 	const char* names[]  = { "mcaVolumetric", "mcaDeviatoric", "mcaPlastic", "mcaViscous", "mcaFriction", "mcaFracture", "mcaCoupling", "mcaJoined" };

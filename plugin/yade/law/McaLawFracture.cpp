@@ -180,7 +180,8 @@ void Loop::filterVolumes(bool account)
 		if (account) {
 			Real pairs = 0;
 			for (int k = 0; k < nLinks; k++)
-				if (const Side& s = r.link[k]; s.p) pairs += mca::linkWeight(flagsOf(*r.l), k) * mca::pairEnergy(stressOf(*s.p, s.side), now, s.p->twoG);
+				if (const Side& s = r.link[k]; s.p)
+					pairs += mca::linkWeight(flagsOf(*r.l), k) * mca::pairEnergy(stressOf(*s.p, s.side), now, s.p->twoG);
 			law.coupling += (r.material->eos.heats() ? 0. : coldEnergyAt(r, now) - coldEnergyAt(r, J))
 				+ deviatorEnergyOf(*r.m, *r.l, r.material->G, pairs) * (1. - ratio);
 		}

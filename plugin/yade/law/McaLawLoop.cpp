@@ -23,7 +23,8 @@ void Loop::overlapError(const Row& r, const Side& s, Real ratio) const
 	std::ostringstream o;
 	const Row&         q = rows[size_t(s.other)];
 	o << "automata " << r.id << " at " << vec(r.state->se3.position) << " m and " << q.id << " at " << vec(q.state->se3.position) << " m are " << ratio
-	  << " rest distances apart in step " << law.steps << "; the least allowed is 0.5 (0.2 if linked). Remedy: a smaller time step, a smaller impact speed, or no overlap in the packing.";
+	  << " rest distances apart in step " << law.steps << "; the least allowed is 0.5 (0.2 if linked). Remedy: a smaller time step, "
+	     "a smaller impact speed, or no overlap in the packing.";
 	throw mca::Error(o.str());
 }
 

@@ -57,7 +57,9 @@ namespace {
 	{
 		if (mca::trianglesIn(flagsOf(l)) != mca::trianglesIn(flags)) return false;
 		for (int k = 0; k < nLinks; k++)
-			if (mca::holds(flagsOf(l), k) != mca::holds(flags, k) || (mca::holds(flags, k) && l.partner[size_t(k)] != partner[size_t(k)])) return false;
+			if (mca::holds(flagsOf(l), k) != mca::holds(flags, k)
+			    || (mca::holds(flags, k) && l.partner[size_t(k)] != partner[size_t(k)]))
+				return false;
 		return true;
 	}
 } // namespace
@@ -279,8 +281,8 @@ namespace {
 	}
 	/// Whether two vectors agree, but for a share of their lengths and for round-off.
 	bool same(const Vector3r& a, const Vector3r& b, Real share, Real round) { return (a - b).norm() <= share * (a.norm() + b.norm()) + round; }
-	/// What the last move was made with: `now` as always, or put elsewhere by a script with the velocity it had; else what was expected, or made if the place
-	/// was set as well.
+	/// What the last move was made with: `now` as always, or put elsewhere by a script with the velocity it had; else what was expected, or made if the
+	/// place was set as well.
 	Vector3r lastOf(const Vector3r& now, const Vector3r& made, const Vector3r& expected, Real round)
 	{
 		if (same(made, now, 1e-9, round) || same(now, expected, 1e-6, round)) return now;

@@ -116,13 +116,12 @@ void Loop::stress(Row& r)
 		add(sums, now, dilation, weight, weight);
 	}
 	for (const Side& s : r.lost) { // what they held goes on in their contacts
-		const Real dilation = dilationOf(s, mca::ofOwn);
-		Trial      gone     = trial(r, s, old(s), dilation);
-		gone.trial          = {};
-		add(sums, gone, dilation, 1., 0.);
+		Trial gone = trial(r, s, old(s), dilationOf(s, mca::ofOwn));
+		gone.trial = {};
+		add(sums, gone, dilationOf(s, mca::ofOwn), 1., 0.);
 	}
 	vector<Stress> held; // stresses of the contacts before the step
-	Real           ofContacts = 0, bothOfContacts = 0;
+	Real ofContacts = 0, bothOfContacts = 0;
 	for (int c = r.firstContact; c < r.lastContact; c++) {
 		const Side& s     = contacts[size_t(c)];
 		const auto  now   = trial(r, s, old(s), dilationOf(s, mca::ofBoth));
@@ -136,12 +135,11 @@ void Loop::stress(Row& r)
 	const Deviator deviator(m, material.G, l.dTheta);
 	const Real     sigma = deviator.equivalent(sums.square * l.invN);
 	mca::Return back { 1., 0. };
-	mca::dispatch(material.yield.kind, [&](auto kind) {
-		back = mca::radialReturn<kind.value>(material.yield, sigma, m.plasticStrain, m.temperature, threeG, dt);
-	});
+	const mca::Yield& y = material.yield;
+	mca::dispatch(y.kind, [&](auto k) { back = mca::radialReturn<k.value>(y, sigma, m.plasticStrain, m.temperature, threeG, dt); });
 	deviator.scale(m, back.scale);
 	m.plasticStrain += back.dEqps;
-	if (material.yield.heats()) m.temperature = mca::warmed(material.yield, m.temperature, sigma, back);
+	if (y.heats()) m.temperature = mca::warmed(y, m.temperature, sigma, back);
 	r.heated = 0;
 	if (material.eos.heats()) {
 		const Real q = mca::plasticHeat(J, sigma, back, 1. / material.eos.rho0);

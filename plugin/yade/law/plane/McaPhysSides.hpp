@@ -26,7 +26,10 @@ inline Trial trialOf(Stress old, Vec r, Vec moved, Turn spin, Real dilation, Rea
 {
 	return { old, mca::trialStress(old, mca::strainIncrement(r, moved, spin), dilation, twoG) };
 }
-inline void add(mca::PairSums<Real>& to, const Trial& t, Real dilation, Real weight, Real holds) { mca::add<true>(to, t.before, t.trial, dilation, weight, holds); }
+inline void add(mca::PairSums<Real>& to, const Trial& t, Real dilation, Real weight, Real holds)
+{
+	mca::add<true>(to, t.before, t.trial, dilation, weight, holds);
+}
 /// What counts as the stress before the step of a contact that does not touch.
 inline Stress untouched(const Trial& t) { return t.before; }
 

@@ -85,8 +85,8 @@ inline Vec pushOnLink(const mca::Tensor<Real>& A, const mca::Tensor<Real>& B, co
 }
 inline Real pushShare(const McaLawState& l) { return starShare(l); }
 
-inline Vec  linkForceOf(Vec r, Stress both, Real inv, Real viscous, Vec push) { return mca::linkForce(r, both, std::sqrt(inv), viscous, push); }
-inline Turn linkTorque(Real arm, Vec r, Real inv, Stress both) { return cross(r, both) * (std::sqrt(inv) * arm); }
+inline Vec  linkForceOf(Vec r, Stress both, Real inv, Real viscous, Vec push) { return mca::linkForce(r, both, mca::root(inv), viscous, push); }
+inline Turn linkTorque(Real arm, Vec r, Real inv, Stress both) { return cross(r, both) * (mca::root(inv) * arm); }
 inline mca::ContactSide contactSideOf(Stress before, Stress trial, Vec r, Real pressure, Real r2, Real d, Real friction, Real J, Real scale, bool touches)
 {
 	return { before, trial, mca::Lattice::bearing(r), pressure, r2, d, friction, J, scale, touches };

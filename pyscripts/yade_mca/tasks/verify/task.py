@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""`verify [automata|grid|interface|all]`: the solvers against exact solutions, their balances and cost. The modules of each part: registry.PARTS."""
+"""`verify [automata|automata3d|grid|interface|all]`: the solvers against exact solutions, their balances and cost. The modules of each part: registry.PARTS."""
 from .. import registry
 from ..registry import UsageError
 
