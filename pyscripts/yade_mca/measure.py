@@ -25,7 +25,7 @@ import numpy as np
 
 from ._arguments import array, number
 
-__all__ = ['RodMeasure', 'geometricLength', 'meanAround', 'momentumSettled', 'rearClearance', 'rodMeasure', 'speedAlong']
+__all__ = ['RodMeasure', 'craterDepth', 'geometricLength', 'meanAround', 'momentumSettled', 'rearClearance', 'rodMeasure', 'speedAlong']
 
 TAIL_STRAIN = 0.1  #: material with less plastic strain is the undeformed tail [-]
 INTACT_STRAIN = 0.3  #: material with less plastic strain may count as intact rod [-]
@@ -133,6 +133,33 @@ def rearClearance(positions, plasticStrain, rear, normal=(0., -1.), quantile=0.9
 	s = speedAlong(positions - array('rear', rear, ValueError, (2, )), normal)
 	s = s[e < BROKEN_STRAIN]
 	return _quantile(s, quantile) if len(s) else -math.inf
+
+
+def craterDepth(positions, volume, radius, step, surface=(0., 0.), direction=(0., -1.), parts=1):
+	"""Depth of the bottom of a crater below the original surface [m]; 0 where there is none, infinite where the target is pierced.
+
+	positions (N, 2 or 3) [m] and volume (N,) (in space [m3], in plane strain [m2]; mass over density) of all material of the target, broken or not, but none of
+	the projectile. The target within `radius` [m] of the axis through `surface`, a point on the original surface, along `direction`, into the target, is cut
+	across the axis into slices of thickness `step` [m], two spacings at least. The first slice that is half full holds the bottom or borders on it; what fills
+	it and the one before tells where: grains in the crater hardly count, broken material that fills its bottom does. It is a mean over the circle: the tip of
+	a bottom of radius R is deeper by some radius^2/(4 R). parts: 4 where the model is a quarter of the whole about that axis. Raises ValueError.
+	"""
+	x, v = array('positions', positions, ValueError, ((None, 2), (None, 3))), array('volume', volume, ValueError, (None, ))
+	n, at = array('direction', direction, ValueError, ((2, ), (3, ))), array('surface', surface, ValueError, ((2, ), (3, )))
+	radius, step = number('radius', radius, ValueError, above=0, unit=' m'), number('step', step, ValueError, above=0, unit=' m')
+	parts = number('parts', parts, ValueError, low=1)
+	if len(v) != len(x) or not (v >= 0).all(): raise ValueError('volume must be one number per piece, none negative; got %d for %d pieces' % (len(v), len(x)))
+	x = x - np.append(at, 0.)[:x.shape[1]]
+	depth = speedAlong(x, n)
+	near = (np.maximum((x * x).sum(axis=1) - depth**2, 0) <= radius**2 * (1 + 1e-9)) & (depth >= 0)
+	if not near.any(): return math.inf
+	if not depth[near].max() < 1e7 * step: raise ValueError('step %g m gives more than 1e7 slices' % step)
+	whole = (math.pi * radius**2 if x.shape[1] == 3 else 2 * radius) * step / parts
+	fill = np.bincount((depth[near] / step).astype(int), v[near]) / whole
+	full = np.flatnonzero(fill >= 0.5)
+	if not len(full): return math.inf
+	k = full[0]
+	return float(step * max(k - (fill[k - 1] if k else 0.) + max(1 - fill[k], 0.) * (k > 0), 0.))
 
 
 def meanAround(points, positions, mass, values, radius):

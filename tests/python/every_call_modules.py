@@ -67,7 +67,7 @@ GOOD = {
         'which': [0, 1, 2], 'point': (0., 0.), 'direction': (0., 1.), 'tolerance': 1e-3, 'scale': 1., 'density': 7800.,
         'points': [(0, 0), (D, 0), (0, D)], 'holes': (), 'center': (0., 0.), 'size': (4 * D, 3 * D), 'radius': 3 * D, 'segments': 60,
         'predicate': predicate, 'z': 0., 'pad': 0., 'shape': rectangle, 'cells': [[(0, 0), (D, 0), (0, D)]], 'mass': [1., 1.],
-        'plasticStrain': [0., 0.2], 'impactSpeed': 100., 'positions': [(0., 0.), (0., -D)], 'values': [1., 2.], 'rear': (0., 0.), 'quantile': 0.95, 'time': [0., 1., 2.],
+        'plasticStrain': [0., 0.2], 'impactSpeed': 100., 'positions': [(0., 0.), (0., -D)], 'values': [1., 2.], 'rear': (0., 0.), 'quantile': 0.95, 'time': [0., 1., 2.], 'volume': [1e-6, 1e-6], 'step': D, 'surface': (0., 0.), 'parts': 1.,
         'momentum': [3., 2., 2.], 'window': 0.5, 'name': '4340', 'label': 'x', 'yieldModel': 'perfect', 'rate': 1., 'temperature': 300.,
         'triaxiality': 0.3, 'volumeRule': 'affine', 'stepFactor': 0.4, 'length': 5 * D, 'height': 3 * D, 'upper': packing, 'lower': packing,
         'flyer': '4340', 'target': '4340', 'flyerThickness': 3 * D, 'targetThickness': 3 * D, 'speed': 50., 'lateral': 'fixed', 'diameter': 3 * D,

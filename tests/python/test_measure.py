@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from yade_mca import measure
-from yade_mca.measure import geometricLength, meanAround, momentumSettled, rearClearance, rodMeasure
+from yade_mca.measure import craterDepth, geometricLength, meanAround, momentumSettled, rearClearance, rodMeasure
 
 
 def rod(n=1000, speed=1520.):
@@ -129,3 +129,31 @@ def test_quantileIsNumpys(n):
 	for q in (0., 0.01, 0.3, 0.5, 0.95, 0.99, 1.):
 		v = rng.normal(size=n)
 		assert measure._quantile(v, q) == np.quantile(v, q)
+
+
+def block(depth, size=20., step=0.5):
+	"""Grid of points in a block below y = 0, a hole of this depth and 10 wide in its middle: positions (N, 3), volume (N,)."""
+	a = np.arange(-0.5 * size + 0.5 * step, 0.5 * size, step)
+	x, y, z = (c.ravel() for c in np.meshgrid(a, np.arange(-30 + 0.5 * step, 0, step), a))
+	keep = (y < -depth) | (np.hypot(x, z) > 5)
+	return np.stack((x, y, z), axis=1)[keep], np.full(keep.sum(), step**3)
+
+
+@pytest.mark.parametrize('depth', [0., 4.5, 7.5, 12., 29.])
+def test_depthOfACrater(depth):
+	x, v = block(depth)
+	assert craterDepth(x, v, 4., 1.) == pytest.approx(depth, abs=0.1)
+	quarter = (x[:, 0] > 0) & (x[:, 2] > 0)
+	assert craterDepth(x[quarter] + (3, 5, 7), v[quarter], 4., 1., (3, 5, 7), (0, -2, 0), parts=4) == pytest.approx(depth, abs=0.1)
+	grains = np.array([(0.5, -2.2, 0.5), (1., -3.1, 0.), (0., 4., 0.)])  # in the crater and above the surface
+	assert craterDepth(np.concatenate((x, grains)), np.append(v, (0.125, ) * 3), 4., 1.) == pytest.approx(depth, abs=0.1)
+	flat = abs(x[:, 2]) < 0.3
+	assert craterDepth(x[flat][:, [1, 0]], v[flat], 4., 1., direction=(-1, 0)) == pytest.approx(depth, abs=0.1)  # two layers, of 0.125 each
+
+
+def test_depthOfAHole():
+	x, v = block(31.)
+	assert craterDepth(x, v, 4., 1.) == math.inf
+	for wrong in (dict(radius=0.), dict(step=-1.), dict(direction=(0, 0)), dict(volume=v[1:]), dict(volume=-v), dict(parts=0), dict(positions=x * math.nan), dict(step=1e-9)):
+		with pytest.raises(ValueError): craterDepth(**dict(dict(positions=x if 'step' not in wrong else block(3.)[0], volume=v if 'step' not in wrong else block(3.)[1],
+		                                                        radius=4., step=1.), **wrong))
