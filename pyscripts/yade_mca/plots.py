@@ -16,11 +16,11 @@ from matplotlib import pyplot as plt
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import EllipseCollection, PolyCollection
 from matplotlib.colors import Normalize
-from matplotlib.ticker import NullFormatter
+from matplotlib.ticker import MaxNLocator, NullFormatter
 
 from .tasks.report import writeAtomically
 
-__all__ = ['automataPicture', 'convergence', 'drawAutomata', 'drawGrid', 'drawPareto', 'gridQuads', 'history', 'pareto', 'paretoFront', 'save', 'saveFixed', 'scale']
+__all__ = ['automataPicture', 'convergence', 'drawAutomata', 'drawGrid', 'drawPareto', 'gridQuads', 'history', 'pareto', 'paretoFront', 'save', 'saveFixed', 'scale', 'spacePicture']
 
 #: unit of the data -> (factor, unit shown)
 SCALES = {'Pa': (1e-9, 'GPa'), 'm': (1e3, 'mm'), 's': (1e6, 'µs'), 'J/kg': (1e-3, 'kJ/kg'), 'J/m': (1e-3, 'kJ/m')}
@@ -126,6 +126,44 @@ def automataPicture(path, positions, radius, values, label, unit='', blocks=(), 
 		axes.set(xlim=(x0, x1), ylim=(y0, y1), aspect='equal', xlabel='x [mm]', ylabel='y [mm]', title=title)
 		outside = 'both' if (vmin is not None and vmax is not None) else 'min' if vmin is not None else 'max' if vmax is not None else 'neither'
 		figure.colorbar(drawn[-1], ax=axes, label='%s [%s]' % (label, name) if name else label, shrink=0.8, extend=outside)
+		return save(figure, path)
+
+
+def mirrored(positions, values, mirror):
+	"""positions (N, 3) and values (N,) with their images at the planes across the axes named, e.g. 'xz', through 0."""
+	for c in mirror:
+		image = positions * np.where(np.arange(3) == 'xyz'.index(c), -1., 1.)
+		positions, values = np.concatenate((positions, image)), np.concatenate((values, values))
+	return positions, values
+
+
+def spacePicture(path, positions, values, label, unit='', mirror='', up='y', size=2., view=(15., -60.), title='', vmin=None, vmax=None, cmap='viridis', width=6.):
+	"""Points in space coloured by one field, in true proportions; for debris, of which one sees the outside.
+
+	positions (N, 3) [m], values (N,) in `unit`; mirror: axes across which images are added, 'xz' of a quarter; up: the axis that is drawn upwards
+	size      of the points [pt]; view: elevation and azimuth of the eye [degrees]; vmin, vmax: colour range in `unit`; width of the picture in inches
+	Raises ValueError where shapes do not fit.
+	"""
+	positions, values = np.asarray(positions, float), np.asarray(values, float)
+	if positions.ndim != 2 or positions.shape[1] != 3 or not len(positions): raise ValueError('positions must have shape (N, 3); got %s' % (positions.shape, ))
+	if values.shape != (len(positions), ): raise ValueError('values must have shape (%d,), one per point; got %s' % (len(positions), values.shape))
+	if not set(mirror) <= set('xyz') or up not in ('x', 'y', 'z'): raise ValueError('mirror and up name axes, x, y or z; got %r and %r' % (mirror, up))
+	factor, name = SCALES.get(unit, (1., unit))
+	low, high = (factor * v for v in _range([values], vmin, vmax))
+	positions, values = mirrored(1e3 * positions, factor * values, mirror)
+	order = [('xyz'.index(up) + k) % 3 for k in (1, 2, 0)]
+	p = positions[:, order]
+	with plt.rc_context(STYLE):
+		figure = plt.figure(figsize=(width, width))
+		axes = figure.add_subplot(projection='3d')
+		drawn = axes.scatter(*p.T, c=values, s=size, cmap=cmap, vmin=low, vmax=high, linewidths=0, depthshade=False, rasterized=True)
+		ends = np.stack((p.min(axis=0), p.max(axis=0)))
+		axes.set(**{'%slim' % c: (a, b if b > a else a + 1) for c, (a, b) in zip('xyz', ends.T)})
+		axes.set_box_aspect(np.maximum(np.ptp(ends, axis=0), 1e-3 * np.ptp(ends)), zoom=1.1)
+		axes.set(**{'%slabel' % c: '%s [mm]' % 'xyz'[k] for c, k in zip('xyz', order)}, title=title)
+		axes.view_init(*view)
+		for axis in (axes.xaxis, axes.yaxis, axes.zaxis): axis.set_major_locator(MaxNLocator(5))
+		figure.colorbar(drawn, ax=axes, label='%s [%s]' % (label, name) if name else label, shrink=0.6, pad=0.16)
 		return save(figure, path)
 
 

@@ -62,3 +62,14 @@ def test_curves(tmp_path):
 	             plots.convergence(tmp_path / 'c.pdf', [2, 1, .5], {'a': [.1, .05, np.nan], 'b': [0, .05, .01]}),
 	             plots.pareto(tmp_path / 'p.svg', [1, 2, 4], [.1, .05, .04], 'abc', groups='xxy')):
 		assert (tmp_path / path).stat().st_size > 2000
+
+
+def test_pointsInSpaceWithTheirImages(tmp_path):
+	x, v = plots.mirrored(np.array([(1., 2., 3.)]), np.array([5.]), 'xz')
+	assert sorted(map(tuple, x.tolist())) == [(-1, 2, -3), (-1, 2, 3), (1, 2, -3), (1, 2, 3)] and v.tolist() == [5.] * 4
+	points = np.random.default_rng(1).random((100, 3)) * 1e-2
+	path = plots.spacePicture(tmp_path / 's.png', points, 1e3 * points[:, 1], 'speed', 'm/s', mirror='xz')
+	assert pixels(path).std() > 0.05
+	plots.spacePicture(tmp_path / 't.png', points[:1], [1.], 'one')
+	for wrong in (dict(positions=points[:, :2]), dict(values=[1.]), dict(mirror='q'), dict(up='up')):
+		with pytest.raises(ValueError): plots.spacePicture(**dict(dict(path=tmp_path / 'u.png', positions=points, values=points[:, 0], label='x'), **wrong))
