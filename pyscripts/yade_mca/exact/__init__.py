@@ -4,6 +4,7 @@
 shock        shock adiabat, impedance match, elastic limit, elastic-plastic piston
 waves        Rayleigh speed, Lamb's problem on the surface of a half-plane
 lattice      phase speeds of the hexagonal packing (Bloch analysis), reflection at a tied row
+space_lattice  phase speeds and largest stable step of the face-centred cubic packing (Bloch analysis)
 penetrator   Alekseevskii-Tate rod, penetration of a plate
 shell        collapse of a plastic cylindrical shell
 beam         bending frequency of a free beam
@@ -15,9 +16,10 @@ from .lattice import chainReflection, hexagonalSpeeds, hexagonalStableStep, tied
 from .penetrator import Tate, tatePlate
 from .shell import shellStopRadius, shellVelocity
 from .shock import Hugoniot, elasticLimit, impedanceMatch, piston
+from .space_lattice import fccModes, fccSpeeds, fccStableStep
 from .waves import lambSurface, rayleighSpeed, ricker
 
 __all__ = [
-        'Hugoniot', 'Tate', 'chainReflection', 'elasticLimit', 'freeBeam', 'hexagonalSpeeds', 'hexagonalStableStep', 'impedanceMatch', 'kirsch', 'lambSurface', 'piston',
+        'Hugoniot', 'Tate', 'chainReflection', 'elasticLimit', 'fccModes', 'fccSpeeds', 'fccStableStep', 'freeBeam', 'hexagonalSpeeds', 'hexagonalStableStep', 'impedanceMatch', 'kirsch', 'lambSurface', 'piston',
         'rayleighSpeed', 'ricker', 'shellStopRadius', 'shellVelocity', 'tatePlate', 'tiedLatticeReflection', 'tiedRowReflection'
 ]

@@ -21,7 +21,7 @@ SUMMARIES = {
         'penetration': 'a tungsten rod through a steel plate: losses of speed and length, pictures, animation, page',
         'table1': 'six plate thicknesses in both modes beside the published table',
         'study': 'how the penetration result depends on spacing, seeds, options and width',
-        'verify': 'automata, grid, interface or all against exact solutions',
+        'verify': 'automata in plane strain and in space, grid, interface or all against exact solutions',
         'bench': 'run time against error, cost by phase',
         'stress': 'numerical stability: what holds, what is refused, what fails',
         'info': 'versions, instruction level, threads, classes, materials',
@@ -33,6 +33,7 @@ SUMMARIES = {
 #: parts of `verify`, in the order in which `all` runs them; part -> modules with CASES, functions of (report, want, quick) each
 PARTS = {
         'automata': ('verify.automata_elastic', 'verify.automata_balance', 'verify.automata_roads', 'verify.automata_shocks', 'verify.automata_impact', 'verify.automata_surfaces'),
+        'automata3d': ('verify.space_elastic', 'verify.space_balance', 'verify.space_shocks'),
         'grid': ('verify.grid_waves', 'verify.grid_lamb', 'verify.grid_shocks', 'verify.grid_shell', 'verify.grid_cost'),
         'interface': ('verify.interface_block', 'verify.interface_waves'),
 }

@@ -130,6 +130,18 @@ def move(ids, vx=None, vy=None, spin=None):
 			b.angVel = (0., 0., at(spin, 0.))
 
 
+def give(ids, velocity=None, spin=None):
+	"""Sets velocities [m/s] and spins [1/s] of bodies in space, arrays (N, 3) or (3,); None leaves them."""
+	bodies, of = omega().bodies, lambda v: np.broadcast_to(v, (len(ids), 3)).tolist()
+	states = [bodies[i].state for i in np.asarray(ids).tolist()]
+	if velocity is not None:
+		for s, v in zip(states, of(velocity)):
+			s.vel = v
+	if spin is not None:
+		for s, w in zip(states, of(spin)):
+			s.angVel = w
+
+
 def fixedStep(s, dt):
 	"""The same step [s] everywhere, set by hand."""
 	if 'stepper' in s.facts: s.facts['stepper'].active = False
@@ -176,6 +188,14 @@ def record(s, points, component, number, every):
 
 
 # ---- reading them
+
+
+def triples(s, *kinds):
+	"""Quantities of all automata in space with three components, of kinds 'x', 'v', 'f', 'omega': arrays (N, 3) in the order of the ids."""
+	names = {'x': ('x', 'y', 'z'), 'v': ('vx', 'vy', 'vz'), 'f': ('fx', 'fy', 'fz'), 'omega': ('omegaX', 'omegaY', 'omegaZ')}
+	found = s.automata.fields([n for k in kinds for n in names[k]])
+	made = [np.stack([found[n] for n in names[k]], axis=1) for k in kinds]
+	return made if len(made) > 1 else made[0]
 
 
 def nearest(s, x, y, part='half'):
