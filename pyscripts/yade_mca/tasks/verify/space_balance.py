@@ -230,7 +230,7 @@ def threads(report, want, quick):
 	if not want('space/threads'): return
 	found = []
 	for n in '1', '2':
-		code = 'from yade_mca.tasks.verify.space_balance import bits; print(*bits(%d))' % (150 if quick else 400)
+		code = 'from yade_mca.tasks.verify.space_balance import bits; print(*bits(%d))' % (300 if quick else 600)
 		r = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True, stdin=subprocess.DEVNULL,
 		                   env=dict(os.environ, OMP_NUM_THREADS=n, PYTHONPATH=os.pathsep.join(filter(None, sys.path))))
 		if r.returncode: raise RuntimeError('the run on %s threads ended: %s' % (n, ' '.join(r.stderr.split())[-300:]))

@@ -3,7 +3,7 @@
 
 The column is periodic across: around the automata inside is a skin of their images, so that whoever is inside has all its neighbours. Forces from outside
 (O.forces) keep an image where the automaton is whose image it is: they give it the acceleration which that one is about to have, by the two steps before, less
-what it has by itself, and take away in one step what it is off. All are free in all directions.
+what it has by itself, and take away in one step what it is off. All are free in all directions. The volume filter, which reaches further than the skin, is off.
 """
 from dataclasses import replace
 
@@ -19,15 +19,15 @@ from .space_elastic import DIRECTIONS
 
 #: periods across, along y and z, of the packing that stands as DIRECTIONS says [d]
 PERIODS = {'100': (1., 1.), '110': (2**0.5, 1.), '111': (1., 3**0.5), '123': (10**0.5, 35**0.5)}
-LENGTH, SKIN, DRIVEN = 150., 2.05, 3.2  #: of the column, of the images around it, and of the piston [d]
+LENGTH, SKIN, DRIVEN = 175., 2.05, 3.2  #: of the column, of the images around it, and of the piston [d]
 NOISE = 1e-3  #: largest displacement at the start [d]: without it symmetry would hide what scatters
-STEP = 0.25  #: share of the largest stable step: at 0.4 the forces on the images are too coarse and run away
+STEP = 0.2  #: share of the largest stable step: from 0.25 on the forces on the images are too coarse and may run away
 READS = 6  #: positions of the front through which a straight line is laid
 VISCOSITY = (0.5, 2.)  #: linear and quadratic, of a scalar viscosity in space
 
 
-#: direction and speed of the piston over c0: in a short run, and all others of a common one
-QUICK, SOME = (('111', 0.2), ), (('100', 0.05), ('100', 0.2), ('110', 0.1), ('111', 0.05), ('123', 0.1))
+#: direction and speed of the piston over c0: in a short run, and what a common one has besides
+QUICK, SOME = (('100', 0.1), ), (('110', 0.05), ('111', 0.2), ('123', 0.1))
 
 
 def only(packing, which):
@@ -51,7 +51,7 @@ class Column:
 		if far.max() > 1e-6 * D: raise RuntimeError('the periods of [%s] are not those of the packing' % direction)
 		twin, self.at, pushed = np.flatnonzero(inside)[of], p.positions[:, 0], p.positions[:, 0] < DRIVEN * D
 		noise = NOISE * D * np.random.default_rng(1).uniform(-1, 1, (len(p), 3)) * ~pushed[:, None]
-		self.run = trials.automata(contacts=False, readForces=True, dtFactor=STEP)
+		self.run = trials.automata(contacts=False, readForces=True, dtFactor=STEP, volumeFilter=0.)
 		self.ids = self.run.add('column', replace(p, positions=p.positions + noise[twin]), m, velocity=np.where(pushed[:, None], (self.speed, 0., 0.), 0.))
 		self.run.block(self.ids[pushed], 'xyzXYZ')
 		self.middle = np.flatnonzero(inside)[np.argsort(self.at[inside], kind='stable')]
@@ -133,11 +133,11 @@ def shock(report, want, direction, share):
 	report.add(name + '/speed', speed, materialSpeed(ref, piston(share)[0].density), limit=0.01, unit='m/s')
 	report.add(name + '/pressure', P, ref['P'], limit=0.005, unit='Pa')
 	report.add(name + '/scatter', scatter, 0., unit='rms of the pressure')
-	report.add(name + '/images', off, 0., limit=NOISE, unit='d')
+	report.add(name + '/images', off, 0., limit=1e-4, unit='d')
 
 
 def hugoniot(report, want, quick):
-	"""Three strengths of shock and four directions, half of all pairs of them."""
+	"""Four directions, three strengths of shock between them."""
 	for direction, share in QUICK if quick else QUICK + SOME: shock(report, want, direction, share)
 
 
