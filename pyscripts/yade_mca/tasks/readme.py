@@ -25,6 +25,7 @@ README, RESULTS = os.path.join(ROOT, 'README.md'), os.path.join(ROOT, 'plugin', 
 #: result -> (arguments of pyscripts/run, pictures in its --out folder that README shows: pattern -> name)
 JOBS = {
         'verify-automata': (['verify', 'automata'], {}),
+        'verify-automata3d': (['verify', 'automata3d'], {}),
         'verify-grid': (['verify', 'grid', '--quick'], {}),
         'verify-interface': (['verify', 'interface', '--quick'], {}),
         'check': (['check'], {}),
@@ -58,6 +59,15 @@ ROWS = [
         ('verify-automata', r'longRun/energyDrift', 'automata: energy over a million steps'),
         ('verify-automata', r'bookedEnergy', 'automata: energy, work of all forces'),
         ('verify-automata', r'energySum$', 'automata: energy, state functions and dissipations'),
+        ('verify-automata3d', r'uniform/', 'in space: Hooke and Mises in uniform fields, any orientation'),
+        ('verify-automata3d', r'phaseSpeed/', 'in space: phase speeds in four directions, 6 to 20 spacings per wave'),
+        ('verify-automata3d', r'stableStep/', 'in space: largest stable step'),
+        ('verify-automata3d', r'rotation/', 'in space: rigid turns under stress'),
+        ('verify-automata3d', r'tension/', 'in space: modulus of a bar with plane faces'),
+        ('verify-automata3d', r'hugoniot/.*(speed|pressure)$', 'in space: speed and pressure of plastic shocks'),
+        ('verify-automata3d', r'[mM]omentum$', 'in space: momenta, also of a tumbling top'),
+        ('verify-automata3d', r'(vibration|turning|top/[^/]*)/energy$', 'in space: energy of free bodies, up to 1e5 steps'),
+        ('verify-automata3d', r'collision/.*(bookedEnergy|energySum)$', 'in space: energy of colliding balls, both sums'),
         ('check', r'/(?!wall)[^/]*$', 'examples'),
 ]
 

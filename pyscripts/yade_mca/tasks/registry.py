@@ -33,7 +33,7 @@ SUMMARIES = {
 #: parts of `verify`, in the order in which `all` runs them; part -> modules with CASES, functions of (report, want, quick) each
 PARTS = {
         'automata': ('verify.automata_elastic', 'verify.automata_balance', 'verify.automata_roads', 'verify.automata_shocks', 'verify.automata_impact', 'verify.automata_surfaces'),
-        'automata3d': ('verify.space_elastic', 'verify.space_balance'),
+        'automata3d': ('verify.space_elastic', 'verify.space_balance', 'verify.space_shocks'),
         'grid': ('verify.grid_waves', 'verify.grid_lamb', 'verify.grid_shocks', 'verify.grid_shell', 'verify.grid_cost'),
         'interface': ('verify.interface_block', 'verify.interface_waves'),
 }

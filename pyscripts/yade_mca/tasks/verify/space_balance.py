@@ -13,6 +13,7 @@ from ... import _yade
 from ..._yade import scene as omega
 from ...packings import Ball, Box, fcc
 from .. import trials
+from ..stress.judge import ENERGY
 from ..trials import D, HARD, elastic, give, material, triples
 from .space_elastic import POISSON, randomTurn, rotated
 
@@ -170,9 +171,9 @@ def top(report, want, quick):
 # ---- collision
 
 
-def balls(radius=3.2, speed=200., offset=0.8, **options):
-	"""Two balls of hard steel fly at each other, not head on, and spin; radius in spacings, speed of each [m/s], offset of their lines in radii."""
-	run, m, r = trials.automata(account=True, **options), material('4340', **HARD), np.random.default_rng(21)
+def balls(radius=3.2, speed=200., offset=0.8, changes=(), **options):
+	"""Two balls of hard steel, with `changes`, fly at each other, not head on, and spin; radius in spacings, speed of each [m/s], offset of their lines in radii."""
+	run, m, r = trials.automata(account=True, **options), material('4340', **dict(HARD, **dict(changes))), np.random.default_rng(21)
 	for k, side in enumerate((-1, 1)):
 		p = fcc(D, Ball((0, 0, 0), radius * D), orientation=randomTurn(r))
 		spin = side * 0.2 * speed / (radius * D) * rotated(AXIS, 0.7) @ (0.6, 0., 0.8)
@@ -183,28 +184,37 @@ def balls(radius=3.2, speed=200., offset=0.8, **options):
 	return run
 
 
+def collided(factor, changes):
+	"""Run of two balls to the end of their collision, momenta at the start and the largest errors of the booked energy and of the independent sum."""
+	run = balls(dtFactor=factor, changes=changes)
+	omega().step()
+	before, E, worst = momenta(run), run.automata.energies()['kineticStart'], np.zeros(2)
+	while omega().time < 3e-5:
+		trials.steps(run, 20)
+		e = run.automata.energies()
+		worst = np.maximum(worst, (abs(e['bookedError']) / E, abs(e['total'] / E - 1)))
+	return run, before, worst
+
+
 def collision(report, want, quick):
-	"""Two balls collide with plastic flow, friction and fracture and part again: momenta, both sums of the energy, and what they dissipate."""
-	if not want('space/collision'): return
-	run, errors = None, []
-	for factor in (0.4, 0.2):
-		run = balls(dtFactor=factor)
-		omega().step()
-		before, mass = momenta(run), run.automata.field('mass').sum()
-		E, worst = run.automata.energies()['kineticStart'], np.zeros(2)
-		while omega().time < 3e-5:
-			trials.steps(run, 20)
-			e = run.automata.energies()
-			worst = np.maximum(worst, (abs(e['bookedError']) / E, abs(e['total'] / E - 1)))
-		errors.append(worst[1])
-		if factor < 0.4: continue
-		addMomenta(report, 'space/collision', before, momenta(run), math.sqrt(2 * E * mass), 3.2 * D, 'of sqrt(2 m E)')
-		report.add('space/collision/bookedEnergy', worst[0], 0., limit=1e-12, unit='of the kinetic energy')
-		report.add('space/collision/energySum', worst[1], 0., limit=1e-3, unit='of the kinetic energy')
-		for what in ('plastic', 'viscous', 'friction', 'fracture'):
-			report.add('space/collision/share/' + what, e[what] / E, unit='of the kinetic energy', passed=e[what] > 0)
-		report.add('space/collision/brokenLinks', run.automata.counters()['brokenLinks'], passed=run.automata.counters()['brokenLinks'] > 20)
-	report.add('space/collision/energySumAtHalfTheStep', errors[1], 0., order=trials.order(errors), unit='of the kinetic energy', passed=errors[1] < errors[0])
+	"""Two balls collide with plastic flow and friction, whole and breaking, and part again: momenta, both sums of the energy, and what they dissipate."""
+	kinds = {'whole': (dict(fractureStrain=1e9, spallStrength=1e15), 1e-3, ('plastic', 'viscous', 'friction'), 0.1),
+	         'breaking': ({}, ENERGY, ('plastic', 'viscous', 'friction', 'fracture'), 0.05)}
+	for kind, (changes, limit, losses, fine) in kinds.items():
+		name = 'space/collision/' + kind
+		if not want(name): continue
+		run, before, worst = collided(SHARE, changes)
+		e, mass, broken = run.automata.energies(), run.automata.field('mass').sum(), run.automata.counters()['brokenLinks']
+		E = e['kineticStart']
+		addMomenta(report, name, before, momenta(run), math.sqrt(2 * E * mass), 3.2 * D, 'of sqrt(2 m E)')
+		report.add(name + '/bookedEnergy', worst[0], 0., limit=1e-12, unit='of the kinetic energy')
+		report.add(name + '/energySum', worst[1], 0., limit=limit, unit='of the kinetic energy')
+		for what in losses:
+			report.add('%s/share/%s' % (name, what), e[what] / E, unit='of the kinetic energy', passed=e[what] > 1e-3 * E)
+		report.add(name + '/brokenLinks', broken, passed=(broken > 20) == (kind == 'breaking'))
+		_, _, better = collided(fine, changes)
+		report.add('%s/energySum/dtFactor%g' % (name, fine), better[1], 0., order=trials.order([worst[1], better[1]], SHARE / fine), unit='of the kinetic energy',
+		           passed=better[1] < 0.5 * worst[1])
 
 
 def bits(steps):
@@ -220,7 +230,7 @@ def threads(report, want, quick):
 	if not want('space/threads'): return
 	found = []
 	for n in '1', '2':
-		code = 'from yade_mca.tasks.verify.space_balance import bits; print(*bits(%d))' % (150 if quick else 400)
+		code = 'from yade_mca.tasks.verify.space_balance import bits; print(*bits(%d))' % (300 if quick else 600)
 		r = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True, stdin=subprocess.DEVNULL,
 		                   env=dict(os.environ, OMP_NUM_THREADS=n, PYTHONPATH=os.pathsep.join(filter(None, sys.path))))
 		if r.returncode: raise RuntimeError('the run on %s threads ended: %s' % (n, ' '.join(r.stderr.split())[-300:]))

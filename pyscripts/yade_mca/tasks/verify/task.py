@@ -9,16 +9,18 @@ SUMMARY = registry.SUMMARIES['verify']
 def addArguments(parser):
 	parser.add_argument('part', nargs='?', default='all', choices=[*registry.PARTS, 'all'], help='what to verify (default: all)')
 	parser.add_argument('--quick', action='store_true', help='coarse resolutions only')
+	parser.add_argument('--long', action='store_true', help='the cases that take minutes, too (automata3d: all shocks)')
 	parser.add_argument('--only', metavar='WORD', help='only the cases whose name contains WORD')
 
 
-def groups(part):
-	"""Functions of (report, want, quick) that add the cases of a part whose name `want` accepts. Raises UsageError when a module is missing."""
-	return [group for module in registry.PARTS[part] for group in registry.load(module).CASES]
+def groups(part, long=False):
+	"""Functions of (report, want, quick) that add the cases of a part whose name `want` accepts; long: those that take minutes, too. Raises UsageError when a module is missing."""
+	modules = [registry.load(module) for module in registry.PARTS[part]]
+	return [group for m in modules for group in (*m.CASES, *(getattr(m, 'LONG', ()) if long else ()))]
 
 
 def check(args):
-	args.groups = {part: groups(part) for part in (registry.PARTS if args.part == 'all' else [args.part])}
+	args.groups = {part: groups(part, args.long) for part in (registry.PARTS if args.part == 'all' else [args.part])}
 
 
 def title(args):
