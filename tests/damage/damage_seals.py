@@ -66,7 +66,10 @@ def _pieces(lines, spans):
 		if first.startswith(b'<count>'):
 			out.append((None, struct.pack('<Q', int(LEAF.match(lines[inside[0][0]])[3])), b''))
 			inside = inside[1:]
-		elif first.startswith(b'<x>'): out.append((None, struct.pack('<Q', len(inside)), b''))
+		elif re.match(rb'<(x|w|m00)>', first):  # vector, quaternion, matrix: in the order in which they lie in memory
+			out.append((None, struct.pack('<Q', len(inside)), b''))
+			if first.startswith(b'<m00>'): inside = inside[0::3] + inside[1::3] + inside[2::3]
+			elif len(inside) == 4: inside = sorted(inside, key=lambda span: b'xyzw'.index(lines[span[0]].strip()[1:2]))
 		out += _pieces(lines, inside)
 	return out
 
