@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // McaGridCoupler: which automata make up the row, and how they are tied to the side of the block.
+#include "McaBodies.hpp"
 #include "McaGridCoupler.hpp"
 #include "McaVec.hpp"
 #include <core/Scene.hpp>
@@ -65,6 +66,8 @@ vector<RowPoint> McaGridCoupler::candidates(Scene* scene, std::deque<mca::Materi
 void McaGridCoupler::makeRow(Scene* scene)
 {
 	if (foundAutomata) foundAutomata->ensureBuilt(scene);
+	else if (dimensionByMass(*scene) == 3)
+		throw mca::Error("McaGridCoupler: the automata of the scene are in space, and a grid is in plane strain: rows in space cannot be tied.");
 	mca::grid::Grid&                  g = foundGrid->grid();
 	const mca::grid::OpenNodes&       n = g.open();
 	mca::interface::SideNodes         s;

@@ -78,8 +78,8 @@ void McaPhys::postLoad(McaPhys&)
 
 void McaLawState::postLoad(McaLawState&)
 {
-	const bool known = dimension == 2 || dimension == 3;
-	if (!known || !(partner.empty() && flags == 0 ? true : McaPairLaw::in(dimension).fits(*this)) || rule < 0 || rule > 2)
+	const bool known = dimension == 2 || dimension == 3, none = partner.empty() && flags == 0;
+	if (!known || !(none || McaPairLaw::in(dimension).fits(*this)) || rule < 0 || rule > 2)
 		throw mca::Error("McaLawState: dimension = " + std::to_string(dimension) + ", flags = " + std::to_string(flags) + ", rule = "
 		                 + std::to_string(rule) + " and " + std::to_string(partner.size())
 		                 + " partners in the file are no links of an automaton; the file is damaged or was edited.");

@@ -139,3 +139,19 @@ def test_refusals(plugin):
 	O.run(1, True)
 	O.bodies[ids[0]].state.mass *= 0.3
 	with pytest.raises(RuntimeError, match='volume it stands for'): O.run(1, True)
+	ids = block()
+	scene.engines('law2', 2e-8)
+	O.run(1, True)
+	O.bodies[ids[0]].state.inertia = (1, 2, 3)
+	with pytest.raises(RuntimeError, match='inertia.*about all axes'): O.run(1, True)
+
+
+def test_aGridIsNotTied(plugin):
+	from yade import O
+	from yade.wrapper import McaGridCoupler, McaGridEngine
+	block()
+	scene.engines('law2', 2e-8)
+	g = McaGridEngine()
+	g.addRectangle(materials.mcaMat('4340'), [k * scene.D for k in range(4)], [k * scene.D for k in (-2, -1, 0)], name='plate')
+	O.engines = O.engines + [g, McaGridCoupler(side='top')]
+	with pytest.raises(RuntimeError, match='in space.*plane strain'): O.run(1, True)

@@ -93,6 +93,9 @@ void Loop::checkState(const Row& r) const
 		refuse("body ", r.id, ": mass ", m.mass, perThickness(" kg/m", " kg"), " must be from ", l.cell * rho, " (density times the ",
 		       perThickness("area", "volume"), " it stands for) to ", most,
 		       " (two full cells); a lighter one is not stable at the step that its links allow.");
+	if (mca::dim == 3 && !(m.inertia[0] == m.inertia[2] && m.inertia[1] == m.inertia[2]))
+		refuse("body ", r.id, ": inertia (", m.inertia[0], ", ", m.inertia[1], ", ", m.inertia[2],
+		       ") kg m2 must be the same about all axes, that of a sphere.");
 	for (int axis = firstTurn; axis < 3; axis++)
 		if (freeTurns(m)[size_t(axis)] && !(m.inertia[axis] > 0 && std::isfinite(m.inertia[axis])))
 			refuse("body ", r.id, ": inertia ", m.inertia[axis], perThickness(" kg m", " kg m2"),

@@ -222,12 +222,13 @@ void Loop::findLinks(Scene* scene)
 			auto* p = castTo<McaPhys>(I->phys.get());
 			// InteractionLoop aborts where a functor has its materials the other way round: Ip2_FrictMat_McaMat_McaPhys wants the automaton second
 			if (!I->phys && !I->geom && place[size_t(id)] < 0 && I->getId1() == r.id) I->swapOrder();
-			if (!p || !p->linked || place[size_t(id)] < 0) continue;
-			const int side = I->getId1() == r.id ? 0 : 1, k = side ? mca::Lattice::opposite(p->slot) : p->slot;
+			if (!p || !p->linked) continue;
 			if (p->slot >= nLinks)
 				throw mca::Error(
 					"bodies " + std::to_string(r.id) + " and " + std::to_string(id) + ": slot = " + std::to_string(p->slot)
 					+ " of their link must be below " + std::to_string(nLinks) + "; the saved file was edited or damaged.");
+			if (place[size_t(id)] < 0) continue;
+			const int side = I->getId1() == r.id ? 0 : 1, k = side ? mca::Lattice::opposite(p->slot) : p->slot;
 			r.link[k]      = { p, side, place[size_t(id)] };
 			pairConstants(r, r.link[k]);
 			found |= mca::Flags(1) << k;

@@ -142,6 +142,32 @@ def give(ids, velocity=None, spin=None):
 			s.angVel = w
 
 
+def fastestTurn(s, part, quantity, centre, dt):
+	"""Circular frequency [1/s] with which automaton `centre` of a part turns, of which all turn alike: the fastest motion of a packing. By the leapfrog itself
+	w(t + dt) - 2 w(t) + w(t - dt) = -(omega dt)^2 w(t)."""
+	spin = []
+	for _ in range(3):
+		steps(s, 1, dt)
+		spin.append(s.field(part, quantity)[centre])
+	return math.sqrt((2 * spin[1] - spin[0] - spin[2]) / spin[1]) / dt
+
+
+def growthPerStep(turn):
+	"""Factor by which a motion of circular frequency times step `turn` grows in a step of the leapfrog; 1 where it is stable."""
+	a = 0.5 * turn**2 - 1
+	return a + math.sqrt(a * a - 1) if a > 1 else 1.
+
+
+def refusalOf(dt):
+	"""What the engine says to a step of dt [s]; empty where it does it."""
+	omega().dt = dt
+	try:
+		omega().step()
+	except RuntimeError as e:
+		return str(e)
+	return ''
+
+
 def fixedStep(s, dt):
 	"""The same step [s] everywhere, set by hand."""
 	if 'stepper' in s.facts: s.facts['stepper'].active = False
