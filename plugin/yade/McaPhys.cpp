@@ -180,10 +180,7 @@ bool Law2_ScGeom_McaPhys_Mca::go(shared_ptr<IGeom>& geom, shared_ptr<IPhys>& phy
 		McaPhys::leaveError("Law2_ScGeom_McaPhys_Mca in O.engines: range = " + std::to_string(range) + " must be from 1.1 to 10.");
 		return true;
 	}
-	const auto& bodies = scene->bodies->body;
-	const auto  gone   = [&](int id) { return id < 0 || size_t(id) >= bodies.size() || !bodies[size_t(id)]; };
-	if (gone(I->getId1()) || gone(I->getId2())) return false; // O.bodies.clear() leaves interactions
-	const Body &A = *bodies[size_t(I->getId1())], &B = *bodies[size_t(I->getId2())];
+	const Body &A = *scene->bodies->body[I->getId1()], &B = *scene->bodies->body[I->getId2()];
 	if (p.wall) return wallForce(static_cast<const ScGeom&>(*geom), p, A, B);
 
 	const McaLawState *la = lawState(A), *lb = lawState(B);

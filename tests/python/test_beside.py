@@ -13,7 +13,7 @@ import pytest
 from yade_mca.beside import Beside, BesideError
 
 PACKAGE = Path(__file__).resolve().parents[2] / 'pyscripts'
-RUN = ['penetration', '--spacing', '1', '--thickness', '16', '--until', '90', '--checkpoint-interval', '0.01']  # goes on for seconds after its first checkpoint, which a busy machine writes late
+RUN = ['penetration', '--spacing', '0.5', '--thickness', '16', '--until', '90', '--checkpoint-interval', '0.01']  # goes on for half a minute after its first checkpoint, which a busy machine writes late
 
 
 def there(pid):

@@ -155,3 +155,17 @@ def test_aGridIsNotTied(plugin):
 	g.addRectangle(materials.mcaMat('4340'), [k * scene.D for k in range(4)], [k * scene.D for k in (-2, -1, 0)], name='plate')
 	O.engines = O.engines + [g, McaGridCoupler(side='top')]
 	with pytest.raises(RuntimeError, match='in space.*plane strain'): O.run(1, True)
+
+
+def test_clearedBodiesTakeTheirContactsAlong(plugin):
+	"""Stock YADE leaves the interactions, and its loop would read the memory of the bodies."""
+	from yade import O
+	from yade.utils import wall
+	ids = block(10.)
+	O.bodies.append(wall(min(O.bodies[i].state.pos[1] for i in ids) - 0.45 * scene.D, axis=1))
+	scene.engines('law2', 2e-8)
+	O.run(3, True)
+	assert any(i.isReal and i.phys.wall for i in O.interactions)
+	O.bodies.clear()
+	O.run(2, True)
+	assert not list(O.interactions)

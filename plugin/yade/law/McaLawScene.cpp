@@ -97,7 +97,6 @@ void Loop::takeIn(Scene* scene)
 	if (known.empty()) {
 		solver.build(all, bodies.materials, o);
 		forget();
-		clearStale(*scene);
 	} else {
 		const auto old = automata::Solver::knowing(known, bodies.materials, records);
 		solver.build(all, bodies.materials, o, &old);
@@ -169,6 +168,7 @@ void Loop::gather(Scene* scene)
 		throw mca::Error(
 			"body " + std::to_string(wall) + " is a wall of McaMat and body " + std::to_string(grain)
 			+ " a sphere of another material; there is no law for the two. Give the wall a FrictMat.");
+	if (!old) clearStale(*scene); // before InteractionLoop looks at them, if nobody is left, too
 	checkMasks(masks, otherMasks);
 	if (old && law.linkFactorUsed > 0 && law.linkFactor != law.linkFactorUsed)
 		throw mca::Error(
