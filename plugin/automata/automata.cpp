@@ -5,7 +5,7 @@
 
 namespace mca::automata {
 namespace {
-	Triple tripleOf(double about) { return { 0., 0., about }; }
+	[[maybe_unused]] Triple tripleOf(double about) { return { 0., 0., about }; }
 	Triple tripleOf(const Vec<double>& v)
 	{
 		Triple t {};
@@ -28,13 +28,6 @@ namespace {
 	{
 		if constexpr (std::is_same_v<S, mca::plane::automata::Solver>) return &solver;
 		else return nullptr;
-	}
-	double outOfPlane([[maybe_unused]] const Store& S, [[maybe_unused]] size_t i)
-	{
-#define MCA_OUT(name, ...) return S.name[i];
-		MCA_OUT_OF_PLANE(MCA_OUT)
-#undef MCA_OUT
-		return 0.;
 	}
 
 	class OfThisDimension final : public Automata {
@@ -97,7 +90,7 @@ namespace {
 			a.position = tripleOf(S.position.at(i)), a.velocity = tripleOf(S.velocity.at(i));
 			a.spin = tripleOf(turnAt(S.omega, i)), a.angle = tripleOf(turnAt(S.angle, i));
 			a.pressure = S.mean[i], a.volumeRatio = S.J[i], a.plasticStrain = S.eqps[i], a.temperature = S.temperature[i];
-			a.equivalentStress = solver.equivalentStress(i), a.stressZZ = outOfPlane(S, i), a.tension = S.P[i] < 0 ? S.P[i] : 0.;
+			a.equivalentStress = solver.equivalentStress(i), a.stressZZ = S.szz[i], a.tension = S.P[i] < 0 ? S.P[i] : 0.;
 			if (!S.heat.empty()) a.dissipated = S.heat[i];
 			a.links = linkCount(S.flags[i]), a.brokenLinks = brokenCount(S.flags[i]);
 			return a;

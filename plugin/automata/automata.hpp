@@ -45,7 +45,7 @@ struct AutomatonFixed {
 struct AutomatonNow {
 	Triple position {}, velocity {}, spin {}, angle {};
 	double pressure = 0, volumeRatio = 1, plasticStrain = 0, temperature = 0, equivalentStress = 0;
-	double stressZZ = 0; ///< deviator out of the plane [Pa]; 0 in space
+	double stressZZ = 0; ///< deviator along z [Pa]
 	std::optional<double> dissipated; ///< where a law heats
 	double tension = 0;  ///< the pressure of the equation of state when it is negative [Pa]
 	int    links = 0, brokenLinks = 0;

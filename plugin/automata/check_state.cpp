@@ -71,7 +71,10 @@ namespace {
 	}
 	bool stressesFinite(const Store& S)
 	{
-		return finiteSides(S.stresses(), [&](size_t q) { return S.stressAt(q); }) && outOfPlane(S, finite);
+		return finiteSides(S.stresses(), [&](size_t q) { return S.stressAt(q); })
+#define MCA_FINITE(name, ...) &&finite(S.name)
+			MCA_DEVIATORS(MCA_FINITE);
+#undef MCA_FINITE
 	}
 	bool sidesFinite(const Contacts& C)
 	{

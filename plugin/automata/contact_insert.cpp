@@ -48,7 +48,7 @@ namespace {
 				for (int l = 0; l < S.blocks[b].count; l++) {
 					const int32_t j = int32_t(b * blockSize) + l;
 					if (plainSquare(at.at(size_t(j)) - x) >= reach2(S, i, j, skin)) continue;
-					if (j == i || !touching(S, i, j) || linked(S, i, j)) continue;
+					if (j == i || !touching(S, i, j) || heldApart(S, i, j)) continue;
 					if (std::find(C.other.begin() + row.first, C.other.begin() + row.second, j) != C.other.begin() + row.second) continue;
 					more.push_back({ i, j }), more.push_back({ j, i });
 				}

@@ -12,6 +12,12 @@ inline bool linked(const Store& S, int32_t i, int32_t j)
 	return false;
 }
 inline bool touching(const Store& S, int32_t i, int32_t j) { return mayTouch(S.flags[i], S.flags[j], S.group[i] == S.group[j]); }
+/// Pairs that are no contacts though they may touch.
+inline bool heldApart(const Store& S, int32_t i, int32_t j)
+{
+	const auto of = [&](int32_t a) { return [&S, a](int k) { return S.neighbour[linkSlot(size_t(a), k)]; }; };
+	return linked(S, i, j) || heldByNeighbour(i, S.flags[i], S.factor[i], of(i), j, S.flags[j], S.factor[j], of(j));
+}
 /// Square of the distance from which on a pair is not listed [m2].
 inline double reach2(const Store& S, int32_t i, int32_t j, double skin) { return sqr(S.restDistance(i, j) * (1. + skin)); }
 /// That of the largest automata [m], and a little more: round-off must not decide what is looked at.

@@ -108,7 +108,7 @@ namespace {
 				const int32_t i  = who[q];
 				row.clear();
 				around(S, place, grid, i, skin, [&](int32_t j) {
-					if (j != i && touching(S, i, j) && !linked(S, i, j)) row.push_back(j);
+					if (j != i && touching(S, i, j) && !heldApart(S, i, j)) row.push_back(j);
 					return false;
 				});
 				if (row.empty()) continue;

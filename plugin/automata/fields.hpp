@@ -33,7 +33,7 @@
 	F(mean, double, always, "pressure", "mean pressure: P, in the affine rule with the part of (5f) [Pa]") \
 	F(viscous, double, always, "", "viscous pressure (12a) of the last move [Pa]") \
 	F(h, double, always, "", "pressure share of (6) [N/m]") \
-	MCA_OUT_OF_PLANE(F) \
+	MCA_DEVIATORS(F) \
 	F(eqps, double, always, "plasticStrain", "equivalent plastic strain [-]") \
 	F(temperature, double, always, "temperature", "[K]") \
 	F(strength, double, always, "strength", "factor on the fracture criteria [-]") \

@@ -21,7 +21,7 @@ template <class F> void Solver::eachBreaking(F&& f) const
 {
 	const Store& S   = store;
 	const auto   end = [&](size_t i, int k) {
-		const double normal = normalStress(S.stressAt(linkSlot(i, k)), S.between(i, size_t(S.neighbour[linkSlot(i, k)])));
+		const double normal = normalStressAt(S, i, k, S.between(i, size_t(S.neighbour[linkSlot(i, k)])));
 		return LinkEnd { S.criterion[i], normal, S.J[i], S.mean[i], S.strength[i] };
 	};
 	for (int32_t b : awake) {
@@ -104,7 +104,11 @@ void Solver::keepVolume(size_t i, double J)
 	if (options.volumeRule == VolumeRule::affine) {
 		if (S.factor[i] == 0.) return;
 		S.factor[i] = affineFactor(J, S.rest[i], determinantNow(i));
-		if (S.factor[i] == 0.) unsettled.push_back({ int32_t(i), J > 0. ? J : S.J[i] });
+		if (S.factor[i] > 0.) return;
+		unsettled.push_back({ int32_t(i), J > 0. ? J : S.J[i] });
+		const double held = deviatorEnergyOf(i);
+		deviatorToSides(S, i);
+		if (options.account) sums.fracture += held - deviatorEnergyOf(i);
 		return;
 	}
 	dispatch(options.volumeRule, [&](auto rule) {

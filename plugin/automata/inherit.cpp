@@ -105,7 +105,10 @@ void Solver::inheritState(const Solver& old)
 		S.J[i] = O.J[o], S.P[i] = O.P[o], S.mean[i] = O.mean[o], S.viscous[i] = O.viscous[o], S.h[i] = O.h[o],
 		S.eqps[i] = O.eqps[o], S.dTheta[i] = O.dTheta[o];
 		S.temperature[i] = O.temperature[o], S.strength[i] = O.strength[o], S.criterion[i] = O.criterion[o];
-		setTurn(S.angle, i, turnAt(O.angle, o)), inheritStress(S, i, O, size_t(o));
+		setTurn(S.angle, i, turnAt(O.angle, o));
+#define MCA_INHERIT(name, ...) S.name[i] = O.name[o];
+		MCA_DEVIATORS(MCA_INHERIT)
+#undef MCA_INHERIT
 		if (!S.heat.empty() && !O.heat.empty()) S.heat[i] = O.heat[o];
 		bool same = trianglesIn(S.flags[i]) == trianglesIn(O.flags[o]);
 		for (int k = 0; k < nLinks; k++) {

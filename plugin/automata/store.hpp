@@ -16,8 +16,6 @@
 
 namespace mca::automata {
 
-constexpr int pushSize  = tensorSize; ///< numbers of the record of pushes that neighbours read
-
 struct Species {
 	int    material = 0;
 	double d        = 0; ///< diameter [m]
@@ -46,7 +44,7 @@ struct Store : LinkStresses {
 	std::vector<int32_t> neighbour; ///< automaton at the other end, itself where there is none; there the same link is Lattice::opposite(k)
 	// records that neighbours read; rebuilt in every step, so not part of the saved state
 	std::vector<double> node; ///< nodeSize per automaton: position, velocity, omega, dTheta, share of the viscosity in push, 0
-	std::vector<double> push; ///< a tensor per automaton, affine rule: link k is pushed by T e_k [N/m]
+	std::vector<double> push; ///< pushSize per automaton, affine rule: with what links are pushed
 	/// All records anew: after building, sorting, loading.
 	void packAll()
 	{

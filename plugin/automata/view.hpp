@@ -54,12 +54,6 @@ MCA_INLINE Vec<v8> gatherPosition(const double* node, const int32_t* at)
 	gather(node, nodeSize, at, r);
 	return r;
 }
-MCA_INLINE Tensor<v8> gatherPush(const double* push, const int32_t* at)
-{
-	Tensor<v8> t;
-	gather(push, pushSize, at, t);
-	return t;
-}
 
 /// a where the lane is on, else b; intact blocks need no choice.
 template <bool intact> MCA_INLINE v8 choose(m8 on, v8 a, v8 b) { return intact ? a : on ? a : b; }

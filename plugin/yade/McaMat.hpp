@@ -26,7 +26,11 @@ public:
 		((Real, viscous, 0, Attr::readonly, "viscous pressure of the last move [Pa]"))
 		((Real, viscousShare, 0, Attr::readonly, "share of the viscous pressure in push [-]"))
 		((Matrix3r, push, Matrix3r::Zero(), Attr::readonly, "affine rule: link k is pushed by push e_k, at outlines by push c_k (5g), in the frame of "
-		    "the packing [N/m]"))
+		    "the packing [N/m]; in space by (pushPressure + pushStress) push e_k, push in m2"))
+		((Real, pushPressure, 0, Attr::readonly, "in space: pressure of the equation of state and of the viscosity [Pa]"))
+		((Matrix3r, pushStress, Matrix3r::Zero(), Attr::readonly, "in space: minus the deviator, and what the sides of pairs do with the deformation (S6) "
+		    "[Pa]"))
+		((Matrix3r, deviator, Matrix3r::Zero(), Attr::readonly, "in space: deviator of the stress (S4) [Pa]"))
 		((Real, pressureShare, 0, Attr::readonly, "pressure share of rule (6), of contacts in the affine rule [N/m]"))
 		((int, rule, 0, Attr::readonly, "volume rule: 0 affine, 1 inversePower, 2 meanDistance"))
 		((Real, contactSum, 0, Attr::readonly, "volume terms of the contacts [-]"))
@@ -56,7 +60,7 @@ public:
 		    "every step"))
 		((Real, temperature, 298, , "temperature, for flow stresses that depend on it [K]; material.newAssocState() sets the reference temperature; "
 		    "read at every look, by :yref:`McaLaw` in every step"))
-		((Real, stressZZ, 0, , "out-of-plane deviatoric stress [Pa]; output"))
+		((Real, stressZZ, 0, , "deviatoric stress along z, in plane strain out of the plane [Pa]; output"))
 		((Real, dissipated, 0, , "internal energy per mass, kept where the equation of state depends on it [J/kg]; output, read in every step by "
 		    ":yref:`McaLaw`"))
 		((Real, strength, 0, , "factor on the strengths of the material [-]; 0 when the automaton is taken in: drawn by the engine from the "

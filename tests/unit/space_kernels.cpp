@@ -171,7 +171,7 @@ TEST(SpaceDeviator, TurnKeepsLengthsAndAdvanceIsTheImplicitMidPoint)
 		const Vec<double> t { u(r), u(r), u(r) }, x { u(r), u(r), 2. }, move { 0.1 * u(r), 0.1 * u(r), 0.1 * u(r) }, w { u(r), u(r), u(r) };
 		EXPECT_NEAR(plainSquare(rotated(t, w)), plainSquare(t), 1e-14);
 		const auto        p    = pairMotion(x, move, w);
-		const auto        a    = advance(t, p, 0.02, 0.96);
+		const auto        a    = advance(t, p, p.normal * 0.02, 0.96);
 		const Vec<double> rate = (p.strain - p.normal * 0.02) * 0.96; // t' = W x t + 2G de at the mean of both ends
 		const Vec<double> residual = a.trial - t - plainCross(p.turn, (a.trial + t) * 0.5) - rate;
 		EXPECT_LT(std::sqrt(plainSquare(residual)), 1e-14);

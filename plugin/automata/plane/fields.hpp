@@ -8,7 +8,8 @@
 /// A row of rotations or torques: plane motion turns about one axis.
 #define MCA_TURN(F, V, name, presence, shown, scripts, text) F(name, double, presence, shown, text)
 #define MCA_TURN_SUM(F, V, name, presence, text) F(name, presence, text)
-#define MCA_OUT_OF_PLANE(F) F(szz, double, always, "stressZZ", "deviator normal to the plane [Pa]")
+/// Stresses of an automaton beside those of its pairs.
+#define MCA_DEVIATORS(F) F(szz, double, always, "stressZZ", "deviator normal to the plane [Pa]")
 /// Planes of symmetry are of space only.
 #define MCA_MIRRORS(V)
 /// Stresses of contacts.

@@ -6,6 +6,8 @@
 
 namespace mca::automata {
 
+/// Numbers of a record of pushes: a tensor, link k is pushed by T e_k [N/m].
+constexpr int pushSize = tensorSize;
 /// Numbers of a record of motion, and places in it behind position and velocity.
 constexpr int nodeSize = 8, spinAt = 4, dilationAt = 5, viscousShareAt = 6;
 /// Writes the motion of the eight automata from i on; the rest comes from the passes.
@@ -69,8 +71,8 @@ template <class S> double mirrorShare(const S&, size_t) { return 1.; }
 template <class S> double pairShare(const S&, size_t, size_t) { return 1.; }
 /// Weight of a link in the exchange of volume (5e): weighted rims take no part.
 inline double exchangeWeight(Flags, double, int) { return 1.; }
-/// f(array) of the out-of-plane stresses.
-template <class S, class F> bool outOfPlane(const S& store, F&& f) { return f(store.szz); }
-/// Takes over what is of this kind only.
-template <class S> void inheritStress(S& to, size_t i, const S& from, size_t o) { to.szz[i] = from.szz[o]; }
+/// J times the normal stress of the side of a pair, over its distance r.
+template <class S> double normalStressAt(const S& store, size_t i, int k, Vec<double> r) { return normalStress(store.stressAt(linkSlot(i, k)), r); }
+/// Sides of what has lost its volume hold all of its stress: they do as it is.
+template <class S> void deviatorToSides(S&, size_t) { }
 }

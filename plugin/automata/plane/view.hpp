@@ -46,4 +46,10 @@ struct EightTriangles {
 	m8 any() const { return widen(of) != 0; }
 };
 
+MCA_INLINE Tensor<v8> gatherPush(const double* push, const int32_t* at)
+{
+	Tensor<v8> t;
+	gather(push, pushSize, at, t);
+	return t;
+}
 }

@@ -8,7 +8,14 @@
 /// A row of rotations or torques.
 #define MCA_TURN(F, V, name, presence, shown, scripts, text) V(name, presence, scripts, text, #name "X", #name "Y", #name "Z")
 #define MCA_TURN_SUM(F, V, name, presence, text) V(name, presence, text, #name "X", #name "Y", #name "Z")
-#define MCA_OUT_OF_PLANE(F)
+/// Stresses of an automaton beside those of its pairs.
+#define MCA_DEVIATORS(F) \
+	F(sxx, double, always, "deviatorXX", "deviator of the stress [Pa]") \
+	F(syy, double, always, "deviatorYY", "[Pa]") \
+	F(szz, double, always, "deviatorZZ", "[Pa]") \
+	F(syz, double, always, "deviatorYZ", "[Pa]") \
+	F(szx, double, always, "deviatorZX", "[Pa]") \
+	F(sxy, double, always, "deviatorXY", "[Pa]")
 /// Where an automaton lies on a plane of symmetry: the direction of its normal x, y, z in the frame of the packing [-], else 0.
 #define MCA_MIRRORS(V) \
 	V(mirrorFirst, whenUsed, hidden, "normal of a plane of symmetry x = const in the packing", "mirrorFirstx", "mirrorFirsty", "mirrorFirstz") \

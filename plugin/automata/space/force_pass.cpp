@@ -23,12 +23,15 @@ namespace {
 		}
 		return q;
 	}
-	/// The share of the viscosity in the pushes of automata.
-	MCA_INLINE v8 viscousShares(const BlockView& V, const int32_t* at)
+	/// For the account: mean and viscous pressures of automata.
+	struct Pressures {
+		v8 mean, viscous;
+	};
+	MCA_INLINE Pressures pressures(const BlockView& V, const int32_t* at)
 	{
-		v8 share, unused;
-		gather2(V.node + viscousShareAt, nodeSize, at, share, unused);
-		return share;
+		Pressures p;
+		gather2(V.node + pressuresAt, nodeSize, at, p.mean, p.viscous);
+		return p;
 	}
 	template <bool intact, bool mixed, bool viscous, bool account> void run(const BlockView& V, const Store& S, const Extra& E)
 	{
@@ -38,15 +41,13 @@ namespace {
 		for (int g = 0; g < blockSize; g += lanes) {
 			const Vec<v8>    x = load(V.position, g), v = load(V.velocity, g), none {};
 			const m8         bits = intact ? m8 {} : widen(V.flags + g);
-			const Tensor<v8> push = gatherPush(V.pushOfAll, self + g);
+			const Pushes<v8> push = gatherPushes(V.pushOfAll, self + g);
 			Vec<v8>          force = none, torque = none, ofPressure = none, ofViscosity = none;
-			Tensor<v8>       viscousPush;
-			if (account) viscousPush = push * viscousShares(V, self + g);
 #pragma GCC unroll 12
 			for (int k = 0; k < nLinks; k++) {
 				const int32_t*   j     = V.others(k, g);
 				const Motion     other = viscous ? gatherVelocity(V.node, j) : Motion { gatherPosition(V.node, j), none, none };
-				const Tensor<v8> theirs = gatherPush(V.pushOfAll, j);
+				const Pushes<v8> theirs = gatherPushes(V.pushOfAll, j);
 				const Vec<v8>    r   = other.position - x;
 				const m8         on  = holding(bits, k);
 				const v8         w   = choose<intact>(on, weights<intact>(bits, k), splat(0.));
@@ -54,24 +55,28 @@ namespace {
 				if (mixed)
 					for (int l = 0; l < lanes; l++) dij[l] = 0.5 * (V.d + V.diameterOfAll[j[l]]);
 				const v8      r2 = choose<intact>(on, dot(r, r), dij * dij), invR2 = 1. / r2;
-				const Vec<v8> mine = gatherTraction(V.tractions(k, g), inRow), others = tractionsOfOthers(V.tractionOfAll, j, k);
-				const Vec<v8> both  = ofBothSides(pairArea(w, dij), mine, others);
+				const Vec<v8> mine = gatherTraction(V.tractions(k, g), inRow), theirSide = tractionsOfOthers(V.tractionOfAll, j, k);
+				const Vec<v8> both  = ofBothSides(pairArea(w, dij), mine, theirSide);
 				const v8      part  = weights<intact>(bits, k);
-				const Vec<v8> pushes = times(push + theirs, k), 
-					      press = choose<intact>(on, intact ? pushes : pushes * part, none); // pushes i by its negative
+				const LinkPush<v8> pushes = linkPush(push, theirs, k);
+				// push i by their negatives
+				const Vec<v8> press = choose<intact>(on, intact ? pushes.pressures : pushes.pressures * part, none),
+					      beside = choose<intact>(on, intact ? pushes.own : pushes.own * part, none);
 				v8            q {};
 				if (viscous) {
 					const v8 closing = dot(r, other.velocity - v);
 					q = mixed ? viscosityMixed(V, S, j, closing, invR2, dij, w)
 						  : w * viscousCoefficient(closing, invR2, own.linear, own.quadratic, Lattice::width(V.d));
 				}
-				if (account) { // what of the push is viscous
-					const Vec<v8> p = choose<intact>(on, times(viscousPush + theirs * viscousShares(V, j), k) * part, none);
-					ofViscosity     = fma(q, r, ofViscosity) - p, ofPressure += p - press;
+				if (account) {
+					const Pressures a = pressures(V, self + g), b = pressures(V, j);
+					const Vec<v8>   p = times(push.volume, k) * part, o = times(theirs.volume, k) * part;
+					ofViscosity = fma(q, r, ofViscosity) - choose<intact>(on, fma(a.viscous, p, o * b.viscous), none);
+					ofPressure += -choose<intact>(on, fma(a.mean, p, o * b.mean), none);
 				}
-				const v8 perLength = root(invR2);
-				force += linkForce(r, both, perLength, q, press);
-				Vec<v8> turning = cross(r, both) * perLength;
+				const v8      perLength = root(invR2);
+				const Vec<v8> turns = linkTurning(both, perLength, beside), turning = cross(r, turns);
+				force += linkForce(r, turns, q, press);
 				v8      q1      = splat(0.5);
 				if (mixed)
 					for (int l = 0; l < lanes; l++) q1[l] = arm(V.d, V.diameterOfAll[j[l]]);
@@ -95,10 +100,9 @@ void forcePass(Store& S, size_t b, VolumeRule, const Extra& E)
 	prefetchLinks(S, b);
 	const BlockView V(S, b);
 	const bool viscous = ofLink(viscosityOf(V.material), VolumeRule::affine).linear > 0., plain = !V.block.mixed && !E.account;
-	// the rare ones have fewer versions
+	// the rare ones share a version
 	if (plain) choices([&](auto intact, auto friction) { run<intact.value, false, friction.value, false>(V, S, E); }, V.block.intact, viscous);
-	else if (V.block.mixed) choices([&](auto account) { run<false, true, true, account.value>(V, S, E); }, E.account);
-	else choices([&](auto intact) { run<intact.value, false, true, true>(V, S, E); }, V.block.intact);
+	else choices([&](auto account) { run<false, true, true, account.value>(V, S, E); }, E.account);
 	if (V.block.contact && E.contactT[0]) addContacts(V, E);
 }
 }

@@ -6,8 +6,10 @@
 
 namespace mca::automata {
 
+/// Numbers of a record of pushes: those of Pushes.
+constexpr int pushSize = 16;
 /// Numbers of a record of motion, and places in it behind position and velocity.
-constexpr int nodeSize = 12, spinAt = 6, dilationAt = 9, viscousShareAt = 10;
+constexpr int nodeSize = 12, spinAt = 6, dilationAt = 9, pressuresAt = 10; ///< for the account: mean and viscous pressure
 /// Writes the motion of the eight automata from i on; the rest comes from the passes.
 template <class S> void packRecords(const S& store, double* to, size_t i)
 {
@@ -50,16 +52,33 @@ struct ContactTrial {
 };
 MCA_INLINE ContactTrial contactTrial(Side<double> old, Vec<double> r, Vec<double> u, Vec<double> spin, double dilation, double twoG)
 {
-	const auto a = advance(old, pairMotion(r, u, spin), dilation, twoG);
+	const auto motion = pairMotion(r, u, spin);
+	const auto a = advance(old, motion, motion.normal * dilation, twoG);
 	return { a.trial, a.before };
 }
 /// What counts as the stress before the step. Pairs that have slid into each other do not touch and strain without limit near zero distance.
 MCA_INLINE Side<double> before(const ContactTrial& t, Side<double> old, bool touches) { return where(touches, t.before) + where(!touches, old); }
 
-/// Energy of the deviator of an automaton that pairs hold [J].
-template <class S> double deviatorEnergyAt(const S& store, size_t i, double pairs) { return deviatorEnergy(store.materialOf(i).G, store.diameter[i], pairs); }
+/// Deviator of an automaton [Pa].
+template <class S> Symmetric<double> deviatorAt(const S& store, size_t i)
+{
+	return { store.sxx[i], store.syy[i], store.szz[i], store.syz[i], store.szx[i], store.sxy[i] };
+}
+template <class S> void setDeviator(S& store, size_t i, const Symmetric<double>& a)
+{
+	store.sxx[i] = a.xx, store.syy[i] = a.yy, store.szz[i] = a.zz, store.syz[i] = a.yz, store.szx[i] = a.zx, store.sxy[i] = a.xy;
+}
+/// Energy of the deviator of an automaton and of its pairs [J].
+template <class S> double deviatorEnergyAt(const S& store, size_t i, double pairs)
+{
+	return deviatorEnergy(store.materialOf(i).G, store.diameter[i], store.cell[i], store.J[i], deviatorAt(store, i), pairs);
+}
 /// Mises stress; sum over its links of the squares of the stresses [Pa2].
-template <class S> double equivalentStressAt(const S& store, size_t i, double squares) { return mca::equivalentStress(squares * store.invN[i]); }
+template <class S> double equivalentStressAt(const S& store, size_t i, double squares)
+{
+	const Symmetric<double> s = deviatorAt(store, i);
+	return mca::equivalentStress(squares * store.invN[i] + dot(s, s) / 3.);
+}
 /// Where automata have planes of symmetry.
 template <class S> bool hasMirrors(const S& store) { return !store.mirrorFirst.empty(); }
 /// f(axis, normal in the packing) for the planes of symmetry of an automaton; those that it has not are zero.
@@ -101,7 +120,21 @@ template <class S> Tensor<double> measured(const S& store, size_t i)
 /// Weight of a link in the exchange of volume (5e).
 inline double exchangeWeight(Flags flags, double weight, int k) { return linkWeight(flags, k) / shareOfStar(flags, weight); }
 template <class C> bool sidesAre(const C& contacts, size_t n) { return contacts.traction.size() == n; }
-template <class S, class F> bool outOfPlane(const S&, F&&) { return true; }
-/// Takes over what is of this kind only: nothing.
-template <class S> void inheritStress(S&, size_t, const S&, size_t) { }
+/// J times the normal stress of the side of a pair, over its distance r.
+template <class S> double normalStressAt(const S& store, size_t i, int k, Vec<double> r)
+{
+	const Vec<double> n = r * (1. / std::sqrt(plainSquare(r)));
+	return plainDot(store.stressAt(linkSlot(i, k)), n) + store.J[i] * plainDot(times(deviatorAt(store, i), n), n);
+}
+/// Sides of what has lost its volume hold all of its stress.
+template <class S> void deviatorToSides(S& store, size_t i)
+{
+	const Symmetric<double> s = deviatorAt(store, i) * store.J[i];
+	for (int k = 0; k < nLinks; k++)
+		if (holds(store.flags[i], k)) {
+			const size_t at = linkSlot(i, k);
+			store.setStress(at, store.stressAt(at) + times(s, Lattice::bearing(store.between(i, size_t(store.neighbour[at])))));
+		}
+	setDeviator(store, i, Symmetric<double> {});
+}
 }

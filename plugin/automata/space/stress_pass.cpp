@@ -8,57 +8,118 @@ namespace {
 	/// Sums over the links (and contacts) of each automaton of a block.
 	struct Sums {
 		alignas(64) double square[blockSize], before[blockSize], both[blockSize], dilationBefore[blockSize], dilationTrial[blockSize],
-			dilationLost[blockSize], normals[blockSize]; ///< normals: of the trial tractions along the pairs as they stand now
+			dilationLost[blockSize];
+		SymmetricLanes<blockSize> sides; ///< of the trial tractions (x) the pairs as they stand now
 		PairSums<double> of(int l) const { return { square[l], before[l], both[l], dilationBefore[l], dilationTrial[l], dilationLost[l] }; }
 	};
-	void storeSums(const PairSums<v8>& from, v8 normals, bool account, int g, Sums& to)
+	void storeSums(const PairSums<v8>& from, const Symmetric<v8>& sides, bool account, int g, Sums& to)
 	{
-		store(to.square + g, from.square), store(to.normals + g, normals);
+		store(to.square + g, from.square), to.sides.setLanes(g, sides);
 		if (account)
 			store(to.before + g, from.squareBefore), store(to.both + g, from.both), store(to.dilationBefore + g, from.dilationBefore),
 				store(to.dilationTrial + g, from.dilationTrial), store(to.dilationLost + g, from.dilationLost);
 	}
 
-	/// J times the tractions of the step before become those before yield. Not inlined: once for all laws.
+	/// What the links of eight automata do in a step.
+	struct LinkMotions {
+		PairMotion<v8> of[nLinks];
+		Vec<v8>        r[nLinks]; ///< as they stand now
+		DeformationSums<v8> sums;
+	};
+	/// The sums of those at planes of symmetry made those of full stars (S9).
+	__attribute__((noinline)) void completeStars(const BlockView& V, int g, LinkMotions& m)
+	{
+		for (int l = 0; l < lanes; l++) {
+			const size_t i = V.base + size_t(g + l);
+			if (!isMirrored(V.store, i)) continue;
+			for (Tensor<v8>* all : { &m.sums.moved, &m.sums.unspun, &m.sums.middle }) {
+				Tensor<double> one = laneOf(*all, l);
+				eachMirror(V.store, i, [&](int axis, Vec<double> normal) { mirror(one, axis, normal); });
+				setLane(*all, l, one);
+			}
+		}
+	}
+	template <bool intact, bool mixed, bool account> MCA_INLINE void linkMotions(const BlockView& V, double dt, int g, LinkMotions& to)
+	{
+		const Vec<v8> x = load(V.position, g), v = load(V.velocity, g), w = load(V.omega, g);
+		const m8      bits = intact ? m8 {} : widen(V.flags + g);
+#pragma GCC unroll 12
+		for (int k = 0; k < nLinks; k++) {
+			const int32_t* j     = V.others(k, g);
+			const Motion   other = gatherMotion(V.node, j);
+			const m8       on    = holding(bits, k);
+			m8             lies  = on;
+			if (account && !intact) { // a link that has just broken still has its traction: the account asks along which line it lay
+				const Vec<v8> held = gatherTraction(V.tractions(k, g), inRow);
+				lies |= dot(held, held) > 0.;
+			}
+			const Vec<v8> r = choose<intact>(lies, other.position - x, ofLength(splat(V.d))), u = (other.velocity - v) * splat(dt);
+			Vec<v8>       spin  = chord((w + other.omega) * splat(0.5 * dt));
+			if (mixed) // unlike arms
+				for (int l = 0; l < lanes; l++) {
+					const auto s = pairSpin(laneOf(w, l), laneOf(other.omega, l), arm(V.d, V.diameterOfAll[j[l]]), dt);
+					for (int c = 0; c < dim; c++) spin[c][l] = s[c];
+				}
+			to.of[k] = pairMotion(r, u, spin), to.r[k] = r;
+			if (intact) to.sums.add(k, u, to.of[k]);
+			else to.sums.add(k, u, to.of[k], on ? weights<intact>(bits, k) : v8 {});
+		}
+		if (V.block.weighted && hasMirrors(V.store)) completeStars(V, g, to);
+	}
+	MCA_INLINE Symmetric<v8> loadDeviator(const BlockView& V, int g)
+	{
+		return { load(V.sxx + g), load(V.syy + g), load(V.szz + g), load(V.syz + g), load(V.szx + g), load(V.sxy + g) };
+	}
+	MCA_INLINE void storeDeviator(const BlockView& V, int g, const Symmetric<v8>& a)
+	{
+		store(V.sxx + g, a.xx), store(V.syy + g, a.yy), store(V.szz + g, a.zz), store(V.syz + g, a.yz), store(V.szx + g, a.zx), store(V.sxy + g, a.xy);
+	}
+	/// a where the lane is on, else b.
+	MCA_INLINE Symmetric<v8> either(m8 on, const Symmetric<v8>& a, const Symmetric<v8>& b)
+	{
+		return { on ? a.xx : b.xx, on ? a.yy : b.yy, on ? a.zz : b.zz, on ? a.yz : b.yz, on ? a.zx : b.zx, on ? a.xy : b.xy };
+	}
+
+	/// Deviators, and J times the tractions, of the step before become those before yield. Not inlined: once for all laws.
 	template <bool intact, bool mixed, bool account> __attribute__((noinline)) void trialStresses(const BlockView& V, const Store& S, double dt, Sums& to)
 	{
 		const v8 none {};
 		for (int g = 0; g < blockSize; g += lanes) {
-			const Vec<v8> x = load(V.position, g), v = load(V.velocity, g), w = load(V.omega, g);
-			const v8      th = load(V.dTheta + g), perOldJ = perOldRatio(th, load(V.J + g)), dth = pairDilation(th, none, ofOwn);
+			const v8      th = load(V.dTheta + g), perOldJ = perOldRatio(th, load(V.J + g)), invN = load(V.invN + g);
 			const m8      bits = intact ? m8 {} : widen(V.flags + g);
-			PairSums<v8>  sums;
-			v8            normals {};
-#pragma GCC unroll 12
+			LinkMotions   motions;
+			linkMotions<intact, mixed, account>(V, dt, g, motions);
+			Deformation<v8> own = deformation(motions.sums);
+			PairSums<v8>    sums;
+			Symmetric<v8>   sides {};
+			if (!intact) { // where links span no volume, they hold all of the stress
+				const m8 spans = load(V.factor + g) > 0.;
+				own.strain     = either(spans, own.strain, isotropic(pairDilation(th, none, ofOwn)));
+				for (int c = 0; c < dim; c++) own.turn[c] = spans ? own.turn[c] : none;
+			}
+			const Symmetric<v8> before = loadDeviator(V, g);
+			const auto          deviator = advance(before, own, splat(2. * V.material.G));
+			storeDeviator(V, g, deviator.trial);
+			add<account>(sums, before, deviator, invN);
+#pragma GCC unroll 1
 			for (int k = 0; k < nLinks; k++) {
 				const int32_t* j     = V.others(k, g);
-				const Motion   other = gatherMotion(V.node, j);
 				double*        at    = V.tractions(k, g);
-				const Vec<v8>  old   = gatherTraction(at, inRow) * perOldJ;
+				const Vec<v8>  old   = gatherTraction(at, inRow) * perOldJ, apart = times(own.strain, motions.of[k].normal);
 				const m8       on    = holding(bits, k);
-				// a link that has just broken still has its traction: the account asks along which line it lay
-				const m8       lies  = account && !intact ? on | (dot(old, old) > 0.) : on;
-				const Vec<v8>  r     = choose<intact>(lies, other.position - x, ofLength(splat(V.d)));
-				Vec<v8>        spin  = chord((w + other.omega) * splat(0.5 * dt));
 				v8             stiff = splat(2. * V.material.G);
-				if (mixed) // unlike arms; series rule for the stiffness
-					for (int l = 0; l < lanes; l++) {
-						const double q = arm(V.d, V.diameterOfAll[j[l]]);
-						const auto   s = pairSpin(laneOf(w, l), laneOf(other.omega, l), q, dt);
-						for (int c = 0; c < dim; c++) spin[c][l] = s[c];
-						stiff[l] = S.pairTwoG(V.block.species, j[l], q);
-					}
-				const auto    motion = pairMotion(r, (other.velocity - v) * splat(dt), spin);
-				const auto    step   = advance(old, motion, dth, stiff);
+				if (mixed) // series rule for the stiffness
+					for (int l = 0; l < lanes; l++) stiff[l] = S.pairTwoG(V.block.species, j[l], arm(V.d, V.diameterOfAll[j[l]]));
+				const auto    step   = advance(old, motions.of[k], apart, stiff);
 				const Vec<v8> now    = choose<intact>(on, step.trial, Vec<v8> {});
 				scatter4(at, tractionSize, now[0], now[1], now[2], none);
-				const v8 weight = weights<intact>(bits, k);
-				add<account>(
-					sums, old, Advance<v8> { now, step.before }, motion.normal, dth, choose<intact>(lies, weight, none),
-					choose<intact>(on, weight, none));
-				normals += weight * dot(now, r) * (1. / root(dot(r, r)));
+				const v8 weight = weights<intact>(bits, k), held = choose<intact>(on, weight, none);
+				const m8 lies = account && !intact ? on | (dot(old, old) > 0.) : on;
+				add<account>(sums, old, Advance<v8> { now, step.before }, apart, choose<intact>(lies, weight, none), held);
+				const Vec<v8> r = motions.r[k];
+				sides += symmetricDyad(now, r) * (held / root(dot(r, r)));
 			}
-			storeSums(sums, normals, account, g, to);
+			storeSums(sums, sides, account, g, to);
 		}
 	}
 	template <YieldKind kind> MCA_INLINE void radialReturns(const BlockView& V, const Sums& sums, double dt, Returns& to)
@@ -105,34 +166,62 @@ namespace {
 				for (int c = 0; c < tractionSize; c++) t[l * tractionSize + c] *= factor[l];
 		}
 	}
-	/// Sum of weight times J times the tractions along the pairs, as they are now.
-	void sumNormals(const BlockView& V, double* normals)
+	MCA_INLINE void scaleDeviators(const BlockView& V, const Returns& R)
+	{
+		for (double* s : { V.sxx, V.syy, V.szz, V.syz, V.szx, V.sxy })
+			for (int l = 0; l < blockSize; l++) s[l] *= R.scale[l];
+	}
+	/// Sums of weight times J times the tractions (x) the pairs, as they are now.
+	void sumSides(const BlockView& V, SymmetricLanes<blockSize>& to)
 	{
 		for (int l = 0; l < blockSize; l++) {
-			normals[l] = 0.;
+			Symmetric<double> sum {};
 			for (int k = 0; k < nLinks; k++) {
 				const size_t slot = linkSlot(V.base + size_t(l), k);
 				if (!holds(V.flags[l], k)) continue;
 				const Vec<double> r = V.store.between(V.base + size_t(l), size_t(V.store.neighbour[slot]));
-				normals[l] += linkWeight(V.flags[l], k) * normalStress(V.store.stressAt(slot), r);
+				sum += symmetricDyad(V.store.stressAt(slot), Lattice::bearing(r)) * linkWeight(V.flags[l], k);
 			}
+			to.set(l, sum);
 		}
 	}
-	/// The pushes with meanPressure() and with the viscous pressure; account: the share of that in them, too.
-	void meanPressures(const BlockView& V, const double* normals, bool account)
+	/// Those at planes of symmetry made those of full stars (S9): images have the opposite of what couples the normal to the plane.
+	void completeSides(const BlockView& V, SymmetricLanes<blockSize>& sides)
 	{
-		const double       full = Lattice::cell(V.d), bulk = V.material.eos.bulkModulus();
-		alignas(64) double acting[blockSize];
+		for (int l = 0; hasMirrors(V.store) && l < blockSize; l++) {
+			const size_t i = V.base + size_t(l);
+			if (!isMirrored(V.store, i)) continue;
+			Symmetric<double> sum = sides.at(l);
+			eachMirror(V.store, i, [&](int axis, Vec<double> normal) {
+				Vec<double> n {};
+				n[axis] = isZero(normal) ? 0. : 1.;
+				mirror(sum, n);
+			});
+			sides.set(l, sum);
+		}
+	}
+	/// The pushes with P, the viscous pressure, the deviators and what the sides do; account: pressures apart, too.
+	void makePushes(const BlockView& V, SymmetricLanes<blockSize>& sides, bool account)
+	{
+		const double              full = Lattice::cell(V.d), bulk = V.material.eos.bulkModulus();
+		SymmetricLanes<blockSize> own;
+		alignas(64) double        acting[blockSize], cell[blockSize];
+		if (V.block.weighted) completeSides(V, sides);
 #pragma omp simd
 		for (int l = 0; l < blockSize; l++) {
-			const double all = meanPressure(V.P[l], normals[l], V.J[l], full, V.cell[l], bulk);
-			V.mean[l]        = V.factor[l] > 0. ? all : V.P[l];
-			acting[l]        = V.mean[l] + V.viscous[l];
+			const Symmetric<double> s { V.sxx[l], V.syy[l], V.szz[l], V.syz[l], V.szx[l], V.sxy[l] };
+			const Symmetric<double> push = ownPush(s, sides.at(l), V.J[l], full, V.cell[l], bulk);
+			V.mean[l] = V.factor[l] > 0. ? meanPressure(V.P[l], push) : V.P[l];
+			acting[l] = V.P[l] + V.viscous[l];
+			own.set(l, push);
 		}
-		for (int l = 0; l < blockSize; l++) // factor = 0: the push is zero
-			for (int c = 0; c < pushSize; c++) V.push[pushSize * l + c] *= acting[l] * (V.cell[l] / shareOfStar(V.flags[l], V.weight[l]));
+		for (int l = 0; l < blockSize; l++) cell[l] = V.cell[l] / shareOfStar(V.flags[l], V.weight[l]);
+		for (int g = 0; g < blockSize; g += lanes) { // factor = 0: the volume does not push
+			double* push = V.push + pushSize * g;
+			scatterPushes(push, { gatherPushes(push, inRow).volume * load(cell + g), load(acting + g), own.lanes(g) });
+		}
 		for (int l = 0; account && l < blockSize; l++)
-			V.record[nodeSize * l + viscousShareAt] = acting[l] != 0. ? V.viscous[l] / acting[l] : 0.;
+			V.record[nodeSize * l + pressuresAt] = V.mean[l], V.record[nodeSize * l + pressuresAt + 1] = V.viscous[l];
 	}
 	double fractureCriteria(const BlockView& V, const Sums& sums, const Returns& R)
 	{
@@ -160,9 +249,9 @@ namespace {
 		radialReturns<kind>(V, sums, dt, R);
 		yieldBlock<kind, account>(V, sums, R, factor, work);
 		if (contacts) std::copy(factor, factor + blockSize, X.scale + V.base);
-		scaleLinks(V, factor);
-		for (int l = 0; l < blockSize; l++) sums.normals[l] *= factor[l];
-		meanPressures(V, sums.normals, account);
+		scaleLinks(V, factor), scaleDeviators(V, R);
+		for (int l = 0; l < blockSize; l++) sums.sides.set(l, sums.sides.at(l) * factor[l]);
+		makePushes(V, sums.sides, account);
 		if (V.material.fracture.active()) out.criterion = fractureCriteria(V, sums, R);
 	}
 }
@@ -172,9 +261,9 @@ void stressPass(Store& S, size_t b, VolumeRule, double dt, const Extra& X, Block
 	prefetchLinks(S, b);
 	const BlockView V(S, b);
 	if (!(dt > 0.)) {
-		alignas(64) double normals[blockSize];
-		sumNormals(V, normals);
-		return meanPressures(V, normals, work != nullptr);
+		SymmetricLanes<blockSize> sides;
+		sumSides(V, sides);
+		return makePushes(V, sides, work != nullptr);
 	}
 	dispatch(V.material.yield.kind, [&](auto kind) {
 		const bool mixed = V.block.mixed; // rare: without a version for whole blocks

@@ -34,6 +34,20 @@ constexpr Flags slotBits(int k)
 	return (Flags(1) << k) | (Flags(1) << (halfShift + k)) | (Flags(1) << (hadShift + k)) | (edgeBits & Flags(1) << (outlineShift + k));
 }
 
+/// Whether two automata are held apart by a neighbour that both are linked to, as long as both have a volume by their links: in strong compression they come
+/// closer than a contact may be, and are parts of one body all the same. Not those that were linked themselves. neighbour(k): at the other end of a link of a
+/// or b; factorA, factorB: of their volumes.
+template <class Id, class A, class B> bool heldByNeighbour(Id a, Flags flagsA, double factorA, A&& ofA, Id b, Flags flagsB, double factorB, B&& ofB)
+{
+	if (!Lattice::neighboursHold || !(factorA > 0.) || !(factorB > 0.)) return false;
+	bool common = false;
+	for (int k = 0; k < nLinks; k++) {
+		if ((hasHeld(flagsA, k) && ofA(k) == b) || (hasHeld(flagsB, k) && ofB(k) == a)) return false;
+		for (int l = 0; holds(flagsA, k) && l < nLinks; l++) common |= holds(flagsB, l) && ofA(k) == ofB(l);
+	}
+	return common;
+}
+
 /// An exposed automaton touches an interior one, too, when it is no part of its body: debris (links that span no volume) or another group. Both may come
 /// through a rim that has been stretched. Automata of one body keep to their links there.
 inline bool mayTouch(Flags a, Flags b, bool sameGroup)

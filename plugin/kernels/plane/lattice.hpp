@@ -44,6 +44,7 @@ struct Hexagonal {
 	static constexpr double volumeDamping = 1.377 / (2. * 1.212);
 	static constexpr double linkViscosity = 1.; ///< share of the linear viscosity that links have of their own, beside (12a)
 	static constexpr bool affineOnly = false; ///< whether it allows no other rule for the volume
+	static constexpr bool neighboursHold = false; ///< see heldByNeighbour(): second neighbours would touch from a strain of 0.55 on
 	static constexpr const char* name = "hexagonal";
 };
 /// The packing that the solvers are built for.

@@ -53,6 +53,7 @@ struct FaceCentred {
 	static constexpr double      volumeDamping = 2. / (2. * 1.575);
 	static constexpr double      linkViscosity = 1.; ///< share of the linear viscosity that links have of their own, beside (12a)
 	static constexpr bool        affineOnly    = true; ///< whether it allows no other rule for the volume
+	static constexpr bool        neighboursHold = true; ///< see heldByNeighbour(): second neighbours would touch from a strain of 0.35 on
 	static constexpr const char* name          = "face-centred cubic";
 };
 /// The packing that the solvers are built for.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a side of a pair holds in space: a traction in the frame of the laboratory, which is turned with the pair. In a uniform state it is the deviator times
-// n, and that of the other side its negative.
+// Stresses in space, in the frame of the laboratory: a deviator of each automaton, from what its links measure of its deformation, and a traction of each side
+// of a pair, against what the pair does beside that: none in a uniform state. Sides of contacts, and of links that span no volume, hold all of it.
 #pragma once
 #include "../automaton/deviator.hpp"
 
@@ -30,16 +30,18 @@ MCA_INLINE Vec<double> pairSpin(Vec<double> omega, Vec<double> other, double arm
 
 /// What a pair does over the last step, at its middle.
 template <class T> struct PairMotion {
-	Vec<T> strain; ///< [-], along the pair and across it: both have the stiffness 2G
+	Vec<T> move;   ///< u without what the spins explain [m]
+	Vec<T> strain; ///< it over the distance [-]: along the pair and across it, both have the stiffness 2G
 	Vec<T> turn;   ///< [-], about the pair with the mean spin
 	Vec<T> normal; ///< n
+	Vec<T> middle; ///< r at the middle of the step [m]
 };
 /// r now [m]; u = relative displacement of the step [m]; spin: pairSpin().
 template <class T> MCA_INLINE PairMotion<T> pairMotion(Vec<T> r, Vec<T> u, Vec<T> spin)
 {
-	const Vec<T> m   = fma(-0.5, u, r);
+	const Vec<T> m   = fma(-0.5, u, r), move = u - cross(spin, m);
 	const T      inv = 1. / dot(m, m), perLength = root(inv);
-	return { (u - cross(spin, m)) * perLength, fma(dot(spin, m), m, cross(m, u)) * inv, m * perLength };
+	return { move, move * perLength, fma(dot(spin, m), m, cross(m, u)) * inv, m * perLength, m };
 }
 /// a turned by w = 2 tan(angle/2) along the axis (Cayley): its length stays.
 template <class T> MCA_INLINE Vec<T> rotated(Vec<T> a, Vec<T> w)
@@ -51,32 +53,86 @@ template <class T> MCA_INLINE Vec<T> rotated(Vec<T> a, Vec<T> w)
 template <class T> struct Advance {
 	Vec<T> trial, before;
 };
-/// Implicit mid-point: half of the increment before the turn, half after it.
-template <class T> MCA_INLINE Advance<T> advance(Vec<T> before, const PairMotion<T>& p, T pairDilation, T twoG)
+/// Implicit mid-point: half of the increment before the turn, half after it. apart: what of the strain is left out.
+template <class T> MCA_INLINE Advance<T> advance(Vec<T> before, const PairMotion<T>& p, Vec<T> apart, T twoG)
 {
-	const Vec<T> half = fma(-pairDilation, p.normal, p.strain) * (0.5 * twoG), now = rotated(before + half, p.turn);
+	const Vec<T> half = (p.strain - apart) * (0.5 * twoG), now = rotated(before + half, p.turn);
 	return { now + half, now - half };
 }
+/// With a dilation left out along the pair alone.
 template <class T> MCA_INLINE Vec<T> advanced(Vec<T> before, Vec<T> r, Vec<T> u, Vec<T> spin, T pairDilation, T twoG)
 {
-	return advance(before, pairMotion(r, u, spin), pairDilation, twoG).trial;
+	const PairMotion<T> p = pairMotion(r, u, spin);
+	return advance(before, p, p.normal * pairDilation, twoG).trial;
+}
+
+/// What the links of an automaton measure of its deformation in a step, at its middle [-].
+template <class T> struct Deformation {
+	Symmetric<T> strain;
+	Vec<T>       turn; ///< 2 tan(angle/2) along the axis, exactly, where nothing strains
+};
+/// Sums over the links (x) e_k, with their weights [m].
+template <class T> struct DeformationSums {
+	Tensor<T>       moved = {}, unspun = {}, middle = {}; ///< of u, of PairMotion::move, of r at the middle
+	MCA_INLINE void add(int k, Vec<T> u, const PairMotion<T>& p) { addDyad(moved, k, u), addDyad(unspun, k, p.move), addDyad(middle, k, p.middle); }
+	MCA_INLINE void add(int k, Vec<T> u, const PairMotion<T>& p, T w) { addDyad(moved, k, u * w), addDyad(unspun, k, p.move * w), addDyad(middle, k, p.middle * w); }
+};
+/// The same for any set of links that spans a volume. The strain leaves out what the spins explain, as that of a pair does, so that both are one in a wave;
+/// the turn is that of the body.
+template <class T> MCA_INLINE Deformation<T> deformation(const DeformationSums<T>& s)
+{
+	const Tensor<T> C   = cofactor(s.middle);
+	const T         per = 1. / dot(s.middle.column[0], C.column[0]);
+	Vec<T>          D[dim], W[dim]; // columns of the gradients: sums times the inverse of that of r
+	for (int b = 0; b < dim; b++) {
+		const T x = C.column[0][b] * per, y = C.column[1][b] * per, z = C.column[2][b] * per;
+		D[b] = fma(x, s.unspun.column[0], fma(y, s.unspun.column[1], s.unspun.column[2] * z));
+		W[b] = fma(x, s.moved.column[0], fma(y, s.moved.column[1], s.moved.column[2] * z));
+	}
+	return { { D[0][0], D[1][1], D[2][2], 0.5 * (D[1][2] + D[2][1]), 0.5 * (D[2][0] + D[0][2]), 0.5 * (D[0][1] + D[1][0]) },
+		 { 0.5 * (W[1][2] - W[2][1]), 0.5 * (W[2][0] - W[0][2]), 0.5 * (W[0][1] - W[1][0]) } };
+}
+/// R a R^T of the turn w.
+template <class T> MCA_INLINE Symmetric<T> rotated(const Symmetric<T>& a, Vec<T> w)
+{
+	const Vec<T> x = rotated(Vec<T> { a.xx, a.xy, a.zx }, w), y = rotated(Vec<T> { a.xy, a.yy, a.yz }, w), z = rotated(Vec<T> { a.zx, a.yz, a.zz }, w);
+	// rows of R a, turned once more
+	const Vec<T> rx = rotated(Vec<T> { x[0], y[0], z[0] }, w), ry = rotated(Vec<T> { x[1], y[1], z[1] }, w), rz = rotated(Vec<T> { x[2], y[2], z[2] }, w);
+	return { rx[0], ry[1], rz[2], ry[2], rz[0], rx[1] };
+}
+/// Deviator of an automaton before yield, and that of the step before in the frame of now.
+template <class T> struct DeviatorAdvance {
+	Symmetric<T> trial, before;
+};
+template <class T> MCA_INLINE DeviatorAdvance<T> advance(const Symmetric<T>& before, const Deformation<T>& d, T twoG)
+{
+	const Symmetric<T> half = deviatorOf(d.strain) * (0.5 * twoG), now = rotated(before + half, d.turn);
+	return { now + half, now - half };
 }
 
 /// old: stress of the step before; weight: 1, 1/2 where a link counts half; what a link that has just broken held goes on in its contact, so it has none in
 /// `holds`.
 template <bool account, class T>
-MCA_INLINE void add(PairSums<T>& to, Vec<T> old, const Advance<T>& a, Vec<T> normal, T pairDilation, T weight, T holds)
+MCA_INLINE void add(PairSums<T>& to, Vec<T> old, const Advance<T>& a, Vec<T> apart, T weight, T holds)
 {
 	to.square += square(a.trial) * weight;
 	if (account) {
-		const T before = dot(a.before, normal) * pairDilation;
+		const T before = dot(a.before, apart);
 		to.squareBefore += holds * square(old), to.both += weight * product(a.before, a.trial);
-		to.dilationBefore += holds * before, to.dilationTrial += weight * dot(a.trial, normal) * pairDilation;
+		to.dilationBefore += holds * before, to.dilationTrial += weight * dot(a.trial, apart);
 		to.dilationLost += (weight - holds) * before;
 	}
 }
+/// The deviator of the automaton counts as a third of its slots.
+template <bool account, class T> MCA_INLINE void add(PairSums<T>& to, const Symmetric<T>& old, const DeviatorAdvance<T>& a, T invN)
+{
+	const T share = 1. / (3. * invN);
+	to.square += share * dot(a.trial, a.trial);
+	if (account) to.squareBefore += share * dot(old, old), to.both += share * dot(a.before, a.trial);
+}
 
-/// Equivalent stress [Pa]: meanSquare = mean over the slots of the squares of the tractions, sides without a link counted as zero.
+/// Equivalent stress [Pa]: meanSquare = mean over the slots of the squares of the tractions, sides without a link counted as zero, and a third of that of the
+/// deviator.
 MCA_INLINE double equivalentStress(double meanSquare) { return std::sqrt(4.5 * meanSquare); }
 
 /// sums: of links (and of contacts in `both` and `square`); share = cell of the full packing / neighbours; invN = 1/slots.
@@ -92,20 +148,37 @@ pairWork(const PairSums<double>& sums, double trial, const Return& r, double J, 
 	return { pairs * J * 0.5 * (along + trial * r.scale) * r.dEqps, pairs * J * (apart - (threeG > 0 ? dilation * squares / (2. * threeG) : 0.)) };
 }
 
-/// P and what the deviators of the automaton's own sides do with its volume [Pa]. normals = sum of weight times J times the tractions along n, full = cell of
-/// the whole packing. In a uniform field of a whole star the second part is zero. What is below the last bit of a strain is nothing, as it is in P: else the
-/// front of numbers that are not zero runs twice as fast into material at rest. bulk: rho0 c0^2 [Pa].
-MCA_INLINE double meanPressure(double P, double normals, double J, double full, double cell, double bulk)
+/// Stress with which the automaton pushes its neighbours beside P, kept as its negative: minus its deviator, and what the tractions of its own sides do with its
+/// deformation [Pa]. sides = sum of weight times J times traction (x) n, full = cell of the whole packing. What is below the last bit of a strain is nothing, as it is
+/// in P: else the front of numbers that are not zero runs twice as fast into material at rest. bulk: rho0 c0^2 [Pa].
+MCA_INLINE Symmetric<double> ownPush(const Symmetric<double>& deviator, const Symmetric<double>& sides, double J, double full, double cell, double bulk)
 {
-	const double own = full / cell * normals / (nLinks * J);
-	return P + (std::fabs(own) > 2.3e-16 * bulk ? own : 0.);
+	const Symmetric<double> own = sides * (full / (cell * (Lattice::spread * J))) - deviator;
+	const double            least = 2.3e-16 * bulk;
+	return own * (dot(own, own) > least * least ? 1. : 0.);
+}
+/// P with the mean of it [Pa].
+MCA_INLINE double meanPressure(double P, const Symmetric<double>& own) { return P + (1. / 3.) * trace(own); }
+/// With what an automaton pushes its neighbours: link k by (pressure + own) volume e_k [N].
+template <class T> struct Pushes {
+	Tensor<T>    volume;   ///< affinePush() times the cell [m2]
+	T            pressure; ///< P with the viscous one [Pa]
+	Symmetric<T> own;      ///< ownPush()
+};
+/// What both ends of link k push the first with, as its negative: by their pressures, and by what they have beside them, which turns them as well [N].
+template <class T> struct LinkPush {
+	Vec<T> pressures, own;
+};
+template <class T> MCA_INLINE LinkPush<T> linkPush(const Pushes<T>& a, const Pushes<T>& b, int k)
+{
+	const Vec<T> mine = times(a.volume, k), theirs = times(b.volume, k);
+	return { fma(a.pressure, mine, theirs * b.pressure), times(a.own, mine) + times(b.own, theirs) };
 }
 
-/// Force of a link: both = ofBothSides(), push: of the pressures; viscous: over the vector.
-template <class T> MCA_INLINE Vec<T> linkForce(Vec<T> r, Vec<T> both, T perLength, T viscous, Vec<T> push)
-{
-	return fma(perLength, both, fma(viscous, r, -push));
-}
+/// Force of a link: turning: linkTurning(); viscous: over the vector.
+template <class T> MCA_INLINE Vec<T> linkForce(Vec<T> r, Vec<T> turning, T viscous, Vec<T> pressures) { return fma(viscous, r, turning - pressures); }
+/// That part of it that turns its ends; both = ofBothSides(), own: of linkPush().
+template <class T> MCA_INLINE Vec<T> linkTurning(Vec<T> both, T perLength, Vec<T> own) { return fma(perLength, both, -own); }
 /// Force of a contact: both = ofBothSides(), viscous = viscousCoefficient(), pressure over r [N/m].
 MCA_INLINE Vec<double> contactForce(Vec<double> r, Vec<double> both, double invR2, double viscous, double pressure)
 {

@@ -63,9 +63,35 @@ template <class T> MCA_INLINE Tensor<T> cofactor(const Tensor<T>& A)
 {
 	return { cross(A.column[1], A.column[2]), cross(A.column[2], A.column[0]), cross(A.column[0], A.column[1]) };
 }
-inline Symmetric<double> operator*(const Symmetric<double>& a, double f) { return { a.xx * f, a.yy * f, a.zz * f, a.yz * f, a.zx * f, a.xy * f }; }
+template <class T> MCA_INLINE Symmetric<T> operator*(const Symmetric<T>& a, T f) { return { a.xx * f, a.yy * f, a.zz * f, a.yz * f, a.zx * f, a.xy * f }; }
+template <class T> MCA_INLINE Symmetric<T> operator+(const Symmetric<T>& a, const Symmetric<T>& b)
+{
+	return { a.xx + b.xx, a.yy + b.yy, a.zz + b.zz, a.yz + b.yz, a.zx + b.zx, a.xy + b.xy };
+}
+template <class T> MCA_INLINE Symmetric<T> operator-(const Symmetric<T>& a, const Symmetric<T>& b) 
+{
+	return { a.xx - b.xx, a.yy - b.yy, a.zz - b.zz, a.yz - b.yz, a.zx - b.zx, a.xy - b.xy };
+}
+template <class T> MCA_INLINE void         operator+=(Symmetric<T>& a, const Symmetric<T>& b) { a = a + b; }
 /// f times the unit tensor
-inline Symmetric<double> isotropic(double f) { return { f, f, f, 0., 0., 0. }; }
+template <class T> MCA_INLINE Symmetric<T> isotropic(T f) { return { f, f, f, T {}, T {}, T {} }; }
+template <class T> MCA_INLINE T            trace(const Symmetric<T>& a) { return a.xx + a.yy + a.zz; }
+template <class T> MCA_INLINE Symmetric<T> deviatorOf(const Symmetric<T>& a) { return a - isotropic(trace(a) * (1. / 3.)); }
+template <class T> MCA_INLINE Vec<T>       times(const Symmetric<T>& a, Vec<T> v)
+{
+	return { fma(a.xx, v[0], fma(a.xy, v[1], a.zx * v[2])), fma(a.xy, v[0], fma(a.yy, v[1], a.yz * v[2])), fma(a.zx, v[0], fma(a.yz, v[1], a.zz * v[2])) };
+}
+/// sum of the products of all nine components
+template <class T> MCA_INLINE T dot(const Symmetric<T>& a, const Symmetric<T>& b)
+{
+	return fma(a.xx, b.xx, fma(a.yy, b.yy, a.zz * b.zz)) + 2. * fma(a.yz, b.yz, fma(a.zx, b.zx, a.xy * b.xy));
+}
+/// The symmetric part of a (x) b.
+template <class T> MCA_INLINE Symmetric<T> symmetricDyad(Vec<T> a, Vec<T> b)
+{
+	return { a[0] * b[0], a[1] * b[1], a[2] * b[2], 0.5 * fma(a[1], b[2], a[2] * b[1]), 0.5 * fma(a[2], b[0], a[0] * b[2]), 0.5 * fma(a[0], b[1], a[1] * b[0]) };
+}
+template <class T> MCA_INLINE Tensor<T> times(const Symmetric<T>& a, const Tensor<T>& b) { return { times(a, b.column[0]), times(a, b.column[1]), times(a, b.column[2]) }; }
 
 /// Vectors in memory: a plane of numbers per component.
 template <class P> struct Planes {
@@ -81,7 +107,13 @@ MCA_INLINE void                       store(const Planes<double>& p, size_t i, V
 }
 
 /// One automaton of eight.
-MCA_INLINE Vec<double> laneOf(const Vec<v8>& a, int l) { return { a[0][l], a[1][l], a[2][l] }; }
+MCA_INLINE Vec<double>    laneOf(const Vec<v8>& a, int l) { return { a[0][l], a[1][l], a[2][l] }; }
+MCA_INLINE Tensor<double> laneOf(const Tensor<v8>& a, int l) { return { laneOf(a.column[0], l), laneOf(a.column[1], l), laneOf(a.column[2], l) }; }
+MCA_INLINE void           setLane(Tensor<v8>& a, int l, const Tensor<double>& b)
+{
+	for (int c = 0; c < dim; c++)
+		for (int q = 0; q < dim; q++) a.column[c][q][l] = b.column[c][q];
+}
 
 /// Tensors of n automata, a plane per entry.
 template <int n> struct TensorLanes {
@@ -108,6 +140,7 @@ template <int n> struct SymmetricLanes {
 	{
 		xx[l] = t.xx, yy[l] = t.yy, zz[l] = t.zz, yz[l] = t.yz, zx[l] = t.zx, xy[l] = t.xy;
 	}
+	MCA_INLINE Symmetric<v8>     lanes(int g) const { return { load(xx + g), load(yy + g), load(zz + g), load(yz + g), load(zx + g), load(xy + g) }; }
 	MCA_INLINE void              setLanes(int g, const Symmetric<v8>& t)
 	{
 		store(xx + g, t.xx), store(yy + g, t.yy), store(zz + g, t.zz), store(yz + g, t.yz), store(zx + g, t.zx), store(xy + g, t.xy);

@@ -17,7 +17,7 @@ bool Loop::breaks(const Row& r, int k) const
 	const Side& s = r.link[k];
 	if (!r.material->fracture.active()) return false;
 	const auto end = [&](const Row& a, int side, Vec toOther) {
-		return mca::LinkEnd { a.l->criterion, mca::normalStress(stressOf(*s.p, side), toOther), a.m->volumeRatio, a.m->pressure, a.m->strength };
+		return mca::LinkEnd { a.l->criterion, mca::normalStress(wholeStress(*a.m, *a.l, stressOf(*s.p, side), toOther), toOther), a.m->volumeRatio, a.m->pressure, a.m->strength };
 	};
 	const Vec x = between(r, s);
 	return mca::breaks(r.material->fracture, end(r, s.side, x), end(rows[size_t(s.other)], 1 - s.side, -x), distance2(r, s), s.p->d);
@@ -87,7 +87,14 @@ void Loop::keepVolume(int i, Real J)
 	if (l.rule == int(VolumeRule::affine)) {
 		if (l.factor == 0) return;
 		l.factor = mca::affineFactor(J, l.rest, determinantNow(r));
-		if (l.factor == 0) unsettled.emplace_back(i, J > 0 ? J : r.m->volumeRatio);
+		if (l.factor > 0) return;
+		unsettled.emplace_back(i, J > 0 ? J : r.m->volumeRatio);
+		// sides of what has lost its volume hold all of its stress
+		const Real held = deviatorEnergyAt(r);
+		for (const Side& s : r.link)
+			if (s.p) setStress(*s.p, s.side, wholeStress(*r.m, l, stressOf(*s.p, s.side), between(r, s)));
+		clearDeviator(l);
+		if (Omega::instance().getScene()->trackEnergy) law.fracture += held - deviatorEnergyAt(r);
 		return;
 	}
 	mca::dispatch(VolumeRule(l.rule), [&](auto rule) {
@@ -101,6 +108,15 @@ void Loop::keepVolume(int i, Real J)
 	unsettled.emplace_back(i, r.m->volumeRatio);
 }
 
+/// Of its links and its deviator.
+Real Loop::deviatorEnergyAt(const Row& r) const
+{
+	Real pairs = 0;
+	for (int k = 0; k < nLinks; k++)
+		if (const Side& s = r.link[k]; s.p)
+			pairs += mca::linkWeight(flagsOf(*r.l), k) * mca::pairEnergy(stressOf(*s.p, s.side), r.m->volumeRatio, s.p->twoG);
+	return deviatorEnergyOf(*r.m, *r.l, r.material->G, pairs);
+}
 Real Loop::coldEnergyAt(const Row& r, Real J) const { return mca::coldEnergy(*r.material, r.l->cell, J); }
 /// Of the volume that contacts give it, if it has links: in the affine rule a volume of its own.
 Real Loop::contactEnergyAt(const Row& r, Real Jc) const { return mca::coldEnergy(*r.material, mca::contactCell(r.d, r.l->cell, 1.), Jc); }
@@ -177,14 +193,8 @@ void Loop::filterVolumes(bool account)
 		if (change[i] == 0) continue;
 		Row&       r = rows[i];
 		const Real now = r.m->volumeRatio, J = now + change[i], ratio = J / now;
-		if (account) {
-			Real pairs = 0;
-			for (int k = 0; k < nLinks; k++)
-				if (const Side& s = r.link[k]; s.p)
-					pairs += mca::linkWeight(flagsOf(*r.l), k) * mca::pairEnergy(stressOf(*s.p, s.side), now, s.p->twoG);
-			law.coupling += (r.material->eos.heats() ? 0. : coldEnergyAt(r, now) - coldEnergyAt(r, J))
-				+ deviatorEnergyOf(*r.m, *r.l, r.material->G, pairs) * (1. - ratio);
-		}
+		if (account)
+			law.coupling += (r.material->eos.heats() ? 0. : coldEnergyAt(r, now) - coldEnergyAt(r, J)) + deviatorEnergyAt(r) * (1. - ratio);
 		r.m->volumeRatio = J;
 		r.l->factor *= ratio;
 		for (const Side& s : r.link)

@@ -91,7 +91,13 @@ private:
 	void                       stress(Row&);
 	Vec                        between(const Row&, const Side&) const;
 	mca::VolumeRule            rule() const { return law.rule(); }
-	Trial                      trial(const Row&, const Side&, Stress old, Real dilation) const;
+	struct Moved {
+		Vec  distance; ///< [m]
+		Turn spin;     ///< pairSpin() [-]
+	};
+	Moved                      moved(const Row&, const Side&) const;
+	Trial                      trial(const Row&, const Side&, Stress old, const Apart&) const;
+	Real                       deviatorEnergyAt(const Row&) const;
 	void                       finishPressure(Row&) const;
 	void                       contactFriction(Row&, const Side&, Stress before, Real scale);
 	[[noreturn]] void          overlapError(const Row&, const Side&, Real ratio) const;

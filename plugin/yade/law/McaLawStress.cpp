@@ -58,7 +58,7 @@ template <mca::EosKind kind> void Loop::volumeBy(Row& r, bool withContacts)
 			now = step(l.factor > 0);
 			l.push = matrixOf(mca::affinePush(c, sums.F, l.factor));
 			const Real slope = mca::volumeSlope(c, sums.F, sums.directions, l.factor);
-			r.stiff          = mca::affineStiffness(c, J, slope, nearest2, outline);
+			r.stiff          = stiffnessOf(c, J, slope, nearest2, outline);
 			if (law.lastMove > 0) {
 				const mca::BulkViscosity viscosity(*r.material, r.d, 1. / law.lastMove);
 				l.viscous = l.factor > 0 ? viscosity.pressure(mca::dilation(J, Jo), slope, mca::tangent<kind>(c.eos, J - 1.)) : 0.;
@@ -87,13 +87,18 @@ template <mca::EosKind kind> void Loop::volumeBy(Row& r, bool withContacts)
 	r.closing     = law.lastMove > 0 ? std::max(-l.dTheta, Real(0)) * r.d / law.lastMove : 0.;
 }
 
-/// (7)-(8): of this side of a pair, before yield; dilation: pairDilation().
-Trial Loop::trial(const Row& r, const Side& s, Stress old, Real dilation) const
+/// What the other end of a pair has done against this one in the last move.
+Loop::Moved Loop::moved(const Row& r, const Side& s) const
 {
-	const Row& o = rows[size_t(s.other)];
-	const Real on   = r.fresh || o.fresh ? 0. : law.lastMove;
-	const auto spin = mca::pairSpin(turnOf(r.spin), turnOf(o.spin), mca::arm(r.d, o.d), on);
-	return trialOf(old, between(r, s), (vec(o.velocity) - vec(r.velocity)) * on, spin, dilation, s.p->twoG);
+	const Row& o  = rows[size_t(s.other)];
+	const Real on = r.fresh || o.fresh ? 0. : law.lastMove;
+	return { (vec(o.velocity) - vec(r.velocity)) * on, mca::pairSpin(turnOf(r.spin), turnOf(o.spin), mca::arm(r.d, o.d), on) };
+}
+/// (7)-(8): of this side of a pair, before yield.
+Trial Loop::trial(const Row& r, const Side& s, Stress old, const Apart& apart) const
+{
+	const Moved m = moved(r, s);
+	return trialOf(old, between(r, s), m.distance, m.spin, apart, s.p->twoG);
 }
 
 // Trial stresses (7)-(9) of this side of all pairs, radial return (10)-(11), friction, fracture criteria.
@@ -107,37 +112,44 @@ void Loop::stress(Row& r)
 	mca::PairSums<Real>  sums;
 	const auto dilationOf = [&](const Side& s, mca::DilationShares share) { return mca::pairDilation(l.dTheta, rows[size_t(s.other)].l->dTheta, share); };
 	const auto           old = [&](const Side& s) { return mca::scaled(stressOf(*s.p, s.side), perOldJ); };
+	Deviator             deviator;
+	for (int k = 0; mca::dim == 3 && k < nLinks; k++)
+		if (const Side& s = r.link[k]; s.p) {
+			const Moved did = moved(r, s);
+			deviator.link(k, between(r, s), did.distance, did.spin, mca::linkWeight(flagsOf(l), k));
+		}
+	deviator.advance(m, l, material.G, l.dTheta);
 	for (int k = 0; k < nLinks; k++) {
 		const Side& s = r.link[k];
 		if (!s.p) continue;
-		const Real weight = mca::linkWeight(flagsOf(l), k), dilation = dilationOf(s, affine ? mca::ofOwn : mca::ofBoth);
-		const auto now = trial(r, s, old(s), dilation);
+		const Real weight = mca::linkWeight(flagsOf(l), k);
+		const auto now = trial(r, s, old(s), deviator.apart(dilationOf(s, affine ? mca::ofOwn : mca::ofBoth)));
 		setStress(*s.p, s.side, now.trial);
-		add(sums, now, dilation, weight, weight);
+		add(sums, now, weight, weight);
 	}
 	for (const Side& s : r.lost) { // what they held goes on in their contacts
-		Trial gone = trial(r, s, old(s), dilationOf(s, mca::ofOwn));
+		Trial gone = trial(r, s, old(s), deviator.apart(dilationOf(s, mca::ofOwn)));
 		gone.trial = {};
-		add(sums, gone, dilationOf(s, mca::ofOwn), 1., 0.);
+		add(sums, gone, 1., 0.);
 	}
 	vector<Stress> held; // stresses of the contacts before the step
 	Real ofContacts = 0, bothOfContacts = 0;
 	for (int c = r.firstContact; c < r.lastContact; c++) {
 		const Side& s     = contacts[size_t(c)];
-		const auto  now   = trial(r, s, old(s), dilationOf(s, mca::ofBoth));
+		const auto  now   = trial(r, s, old(s), apartOf(dilationOf(s, mca::ofBoth)));
 		const bool  touch = s.p->touching(square(between(r, s)));
 		held.push_back(touch ? now.before : untouched(now));
 		setStress(*s.p, s.side, touch ? now.trial : Stress {});
 		if (touch) ofContacts += mca::square(now.trial), bothOfContacts += mca::product(now.before, now.trial);
 	}
 	sums.square += ofContacts, sums.both += bothOfContacts;
+	deviator.addTo(sums, l.invN);
 
-	const Deviator deviator(m, material.G, l.dTheta);
 	const Real     sigma = deviator.equivalent(sums.square * l.invN);
 	mca::Return back { 1., 0. };
 	const mca::Yield& y = material.yield;
 	mca::dispatch(y.kind, [&](auto k) { back = mca::radialReturn<k.value>(y, sigma, m.plasticStrain, m.temperature, threeG, dt); });
-	deviator.scale(m, back.scale);
+	deviator.scale(m, l, back.scale);
 	m.plasticStrain += back.dEqps;
 	if (y.heats()) m.temperature = mca::warmed(y, m.temperature, sigma, back);
 	r.heated = 0;
@@ -160,18 +172,17 @@ void Loop::stress(Row& r)
 		l.criterion = mca::criterion(mca::Criteria(material.fracture), m.plasticStrain, m.pressure, m.equivalentStress, m.strength);
 }
 
-/// (5f), and the push of the affine rule with it and with the viscous pressure.
+/// (5f), (S6), and the push of the affine rule with it and with the viscous pressure.
 void Loop::finishPressure(Row& r) const
 {
-	McaLawState& l       = *r.l;
-	Real         normals = 0;
+	McaLawState& l = *r.l;
+	SideSums     sides;
 	for (int k = 0; k < nLinks; k++)
-		if (const Side& s = r.link[k]; s.p) normals += mca::linkWeight(flagsOf(l), k) * mca::normalStress(stressOf(*s.p, s.side), between(r, s));
+		if (const Side& s = r.link[k]; s.p) sides.add(mca::linkWeight(flagsOf(l), k), stressOf(*s.p, s.side), between(r, s));
 	const bool affine = l.rule == int(VolumeRule::affine) && l.factor > 0;
-	const Real acting = affine ? meanPressureOf(*r.m, l, normals, r.material->eos.bulkModulus()) : l.P, sum = acting + l.viscous;
+	const Real bulk = r.material->eos.bulkModulus(), acting = affine ? sides.meanPressure(*r.m, l, bulk) : l.P;
 	r.m->pressure     = shownPressureOf(l, acting);
-	l.viscousShare = sum != 0 ? l.viscous / sum : 0.;
-	l.push *= sum * l.cell / pushShare(l);
+	sides.finishPush(*r.m, l, acting, bulk);
 }
 
 // No tension, Coulomb friction; what this side dissipates.

@@ -13,7 +13,9 @@ namespace {
 		void force(McaPhys& p, const State& sa, const McaLawState& a, const State& sb, const McaLawState& b) const override;
 		bool mayTouch(const Body& a, const McaLawState& la, const Body& b, const McaLawState& lb) const override
 		{
-			return mca::mayTouch(mca::Flags(la.flags), mca::Flags(lb.flags), a.groupMask == b.groupMask);
+			const auto A = mca::Flags(la.flags), B = mca::Flags(lb.flags);
+			const auto of = [](const McaLawState& l) { return [&l](int k) { return l.partner[size_t(k)]; }; };
+			return mca::mayTouch(A, B, a.groupMask == b.groupMask) && !mca::heldByNeighbour(a.id, A, la.factor, of(la), b.id, B, lb.factor, of(lb));
 		}
 		Real width(Real diameter) const override { return mca::Lattice::width(diameter); }
 		int  links() const override { return mca::nLinks; }
@@ -49,18 +51,19 @@ void PairLaw::force(McaPhys& p, const State& sa, const McaLawState& a, const Sta
 	const auto both   = mca::ofBothSides(mca::pairArea(w, p.d), stressOf(p, 0), stressOf(p, 1));
 	const mca::PairViscosity whole { p.viscLinear, p.viscQuadratic }, c = p.linked ? mca::ofLink(whole, rule) : whole;
 	const Real q = w * mca::viscousCoefficient(along, inv, c.linear, c.quadratic, mca::Lattice::width(p.d));
+	LinkPush   push {};
 	const Vec  f = mca::dispatch(rule, [&](auto known) {
                 constexpr VolumeRule by = known.value;
                 if (!p.linked) return mca::contactForce(r, both, inv, q, pressing<by>(p, a, b, r2, w));
-                const Vec push = by == VolumeRule::affine ? pushOnLink(tensorOf(a.push), tensorOf(b.push), a, b, p.slot) : r * pressing<by>(p, a, b, r2, w);
+                push = by == VolumeRule::affine ? pushOnLink(a, b, p.slot) : pushOf(r * pressing<by>(p, a, b, r2, w));
                 return linkForceOf(r, both, inv, q, push);
         });
-	const auto torque = [&](Real arm) { return p.linked ? linkTorque(arm, r, inv, both) : mca::contactTorque(arm, r, both, f); };
+	const auto torque = [&](Real arm) { return p.linked ? linkTorque(arm, r, inv, both, push) : mca::contactTorque(arm, r, both, f); };
 	p.force           = vector3(f);
 	p.torque          = turn3(torque(mca::arm(a.diameter, b.diameter)));
 	p.torqueOther     = turn3(torque(mca::arm(b.diameter, a.diameter)));
 	p.heatRate = q * along, p.viscousForce = vector3(r * q);
-	if (affine) p.viscousForce -= vector3(pushOnLink(tensorOf(a.push) * a.viscousShare, tensorOf(b.push) * b.viscousShare, a, b, p.slot));
+	if (affine) p.viscousForce -= vector3(viscousPushOnLink(a, b, p.slot));
 	const Vector3r n = vector3(r * std::sqrt(inv));
 	p.normalForce    = -p.force.dot(n) * n;
 	p.shearForce     = -p.force - p.normalForce;

@@ -19,43 +19,79 @@ inline Matrix3r          matrixOf(const mca::Tensor<Real>& t)
 inline Turn     turnOf(const Vector3r& v) { return vec(v); }
 inline Vector3r turn3(Turn t) { return vector3(t); }
 
-/// Traction of a side before yield; that of the step before, as it was and in the frame of now; direction of the pair at the middle of the step.
+inline mca::Symmetric<Real> symmetricOf(const Matrix3r& m) { return { m(0, 0), m(1, 1), m(2, 2), m(1, 2), m(2, 0), m(0, 1) }; }
+inline Matrix3r             matrixOf(const mca::Symmetric<Real>& s)
+{
+	Matrix3r m;
+	m << s.xx, s.xy, s.zx, s.xy, s.yy, s.yz, s.zx, s.yz, s.zz;
+	return m;
+}
+
+/// What of the strain of a pair is left out of its traction.
+using Apart = mca::Symmetric<Real>;
+inline Apart apartOf(Real dilation) { return mca::isotropic(dilation); }
+/// Traction of a side before yield; that of the step before, as it was and in the frame of now; what was left out, along the pair.
 struct Trial {
 	Stress old, before, trial;
-	Vec    normal;
+	Vec    apart;
 };
-inline Trial trialOf(Stress old, Vec r, Vec moved, Turn spin, Real dilation, Real twoG)
+inline Trial trialOf(Stress old, Vec r, Vec moved, Turn spin, const Apart& apart, Real twoG)
 {
 	const auto motion = mca::pairMotion(r, moved, spin);
-	const auto step   = mca::advance(old, motion, dilation, twoG);
-	return { old, step.before, step.trial, motion.normal };
+	const Vec  along  = times(apart, motion.normal);
+	const auto step   = mca::advance(old, motion, along, twoG);
+	return { old, step.before, step.trial, along };
 }
-inline void add(mca::PairSums<Real>& to, const Trial& t, Real dilation, Real weight, Real holds)
+inline void add(mca::PairSums<Real>& to, const Trial& t, Real weight, Real holds)
 {
-	mca::add<true>(to, t.old, mca::Advance<Real> { t.trial, t.before }, t.normal, dilation, weight, holds);
+	mca::add<true>(to, t.old, mca::Advance<Real> { t.trial, t.before }, t.apart, weight, holds);
 }
 /// What counts as the stress before the step of a contact that does not touch.
 inline Stress untouched(const Trial& t) { return t.old; }
 
-/// Deviator of an automaton in a step: that of its pairs.
+/// (S3)-(S5): deviator of an automaton in a step, from what its links measure.
 class Deviator {
+	mca::DeformationSums<Real> sums;
+	mca::Symmetric<Real>       strain {}, old {};
+	mca::DeviatorAdvance<Real> step {};
+	bool                       spans = false;
+
 public:
-	Deviator(const McaState&, Real, Real) { }
+	/// What a link does in a step.
+	void link(int k, Vec r, Vec moved, Turn spin, Real weight) { sums.add(k, moved, mca::pairMotion(r, moved, spin), weight); }
+	void advance(const McaState&, const McaLawState& l, Real G, Real dilation)
+	{
+		spans = l.factor > 0, old = symmetricOf(l.deviator);
+		mca::Deformation<Real> own { apartOf(mca::pairDilation(dilation, Real(0), mca::ofOwn)), {} };
+		if (spans) own = mca::deformation(sums);
+		strain = own.strain, step = mca::advance(old, own, 2. * G);
+	}
+	/// What links leave out of their tractions: what the deviator sees, or a dilation where they span no volume.
+	Apart apart(Real) const { return strain; }
+	void  addTo(mca::PairSums<Real>& to, Real invN) const { mca::add<true>(to, old, step, invN); }
 	Real equivalent(Real meanSquare) const { return mca::equivalentStress(meanSquare); }
-	void scale(McaState&, Real) const { }
+	void scale(McaState& m, McaLawState& l, Real by) const
+	{
+		l.deviator = matrixOf(step.trial * by);
+		m.stressZZ = l.deviator(2, 2);
+	}
 	Real equivalentAfter(const McaState&, Real by, Real meanSquare) const { return by * mca::equivalentStress(meanSquare); }
 	mca::PairWork work(
-		const McaState& m, const mca::PairSums<Real>& sums, Real sigma, const mca::Return& back, Real dilation, Real threeG, Real share, Real invN,
+		const McaState& m, const mca::PairSums<Real>& all, Real sigma, const mca::Return& back, Real dilation, Real threeG, Real share, Real invN,
 		bool conjugate) const
 	{
-		return mca::pairWork(sums, sigma, back, m.volumeRatio, dilation, threeG, share, invN, conjugate);
+		return mca::pairWork(all, sigma, back, m.volumeRatio, dilation, threeG, share, invN, conjugate);
 	}
 };
-inline Real deviatorEnergyOf(const McaState&, const McaLawState& l, Real G, Real pairs) { return mca::deviatorEnergy(G, l.diameter, pairs); }
-/// normals: sum of weight J times the tractions along the links.
-inline Real meanPressureOf(const McaState& m, const McaLawState& l, Real normals, Real bulk)
+/// All that acts along a pair, J times: the traction of its side and that of the deviator; r: to its other end.
+inline Stress wholeStress(const McaState& m, const McaLawState& l, Stress side, Vec r)
 {
-	return mca::meanPressure(l.P, normals, m.volumeRatio, mca::Lattice::cell(l.diameter), l.cell, bulk);
+	return side + times(symmetricOf(l.deviator) * m.volumeRatio, mca::Lattice::bearing(r));
+}
+inline void clearDeviator(McaLawState& l) { l.deviator.setZero(); }
+inline Real deviatorEnergyOf(const McaState& m, const McaLawState& l, Real G, Real pairs)
+{
+	return mca::deviatorEnergy(G, l.diameter, l.cell, m.volumeRatio, symmetricOf(l.deviator), pairs);
 }
 inline Real shownPressureOf(const McaLawState&, Real mean) { return mean; }
 /// (S8): share of the full star that the links make.
@@ -78,15 +114,47 @@ struct LinkSums {
 		F = F * per, directions = directions * per;
 	}
 };
-/// What the pressures of both ends push the first end of a link with, as its negative; A, B: theirs.
-inline Vec pushOnLink(const mca::Tensor<Real>& A, const mca::Tensor<Real>& B, const McaLawState& a, const McaLawState&, int slot)
+/// Sums over the links for (S6).
+struct SideSums {
+	mca::Symmetric<Real> sides {}; ///< of weight J traction (x) n
+	void add(Real weight, Stress side, Vec r) { sides += symmetricDyad(side, mca::Lattice::bearing(r)) * weight; }
+	mca::Symmetric<Real> own(const McaState& m, const McaLawState& l, Real bulk) const
+	{
+		return mca::ownPush(symmetricOf(l.deviator), sides, m.volumeRatio, mca::Lattice::cell(l.diameter), l.cell, bulk);
+	}
+	Real meanPressure(const McaState& m, const McaLawState& l, Real bulk) const { return mca::meanPressure(l.P, own(m, l, bulk)); }
+	void finishPush(const McaState& m, McaLawState& l, Real, Real bulk) const
+	{
+		l.push *= l.cell / starShare(l);
+		l.pushPressure = l.P + l.viscous, l.pushStress = matrixOf(own(m, l, bulk));
+	}
+};
+/// What both ends push the first end of a link with, as its negative.
+using LinkPush = mca::LinkPush<Real>;
+inline LinkPush pushBy(const McaLawState& a, const McaLawState& b, Real pressureA, Real pressureB, int slot)
 {
-	return times(A + B, slot) * mca::linkWeight(mca::Flags(a.flags), slot);
+	const auto push = [](const McaLawState& l, Real pressure) { return mca::Pushes<Real> { tensorOf(l.push), pressure, symmetricOf(l.pushStress) }; };
+	const LinkPush all = mca::linkPush(push(a, pressureA), push(b, pressureB), slot);
+	const Real     w   = mca::linkWeight(mca::Flags(a.flags), slot);
+	return { all.pressures * w, all.own * w };
 }
-inline Real pushShare(const McaLawState& l) { return starShare(l); }
+inline LinkPush pushOnLink(const McaLawState& a, const McaLawState& b, int slot) { return pushBy(a, b, a.pushPressure, b.pushPressure, slot); }
+/// Its viscous share.
+inline Vec viscousPushOnLink(const McaLawState& a, const McaLawState& b, int slot) { return pushBy(a, b, a.viscous, b.viscous, slot).pressures; }
+inline LinkPush pushOf(Vec push) { return { push, {} }; }
 
-inline Vec  linkForceOf(Vec r, Stress both, Real inv, Real viscous, Vec push) { return mca::linkForce(r, both, mca::root(inv), viscous, push); }
-inline Turn linkTorque(Real arm, Vec r, Real inv, Stress both) { return cross(r, both) * (mca::root(inv) * arm); }
+inline Vec linkForceOf(Vec r, Stress both, Real inv, Real viscous, const LinkPush& push)
+{
+	return mca::linkForce(r, mca::linkTurning(both, mca::root(inv), push.own), viscous, push.pressures);
+}
+inline Turn linkTorque(Real arm, Vec r, Real inv, Stress both, const LinkPush& push)
+{
+	return cross(r, mca::linkTurning(both, mca::root(inv), push.own)) * arm;
+}
+template <mca::EosKind kind> Real stiffnessOf(const mca::VolumeConstants<kind>& c, Real J, Real slope, Real nearest2, bool)
+{
+	return mca::affineStiffness(c, J, slope, nearest2);
+}
 inline mca::ContactSide contactSideOf(Stress before, Stress trial, Vec r, Real pressure, Real r2, Real d, Real friction, Real J, Real scale, bool touches)
 {
 	return { before, trial, mca::Lattice::bearing(r), pressure, r2, d, friction, J, scale, touches };
