@@ -108,8 +108,9 @@ public:
 		.def("field", &McaEngine::fieldByName, (py::arg("name")), "Copy of one quantity of all automata now, in the order of `ids`, numpy (N,): 'x', "
 		    "'y' [m], 'vx', 'vy' [m/s], 'omega' [rad/s], 'angle' [rad], 'mass' [kg/m], 'pressure' [Pa], 'volumeRatio' [-], 'equivalentStress' [Pa], "
 		    "'plasticStrain' [-], 'temperature' [K], 'stressZZ' [Pa], 'fx', 'fy' [N/m], 'links' [-], 'brokenLinks' [-], 'strength' [-], 'diameter' "
-		    "[m], 'weight' [-], 'material' [-]; in space 'z', 'vz', 'fz' as well, 'omegaX', 'omegaY', 'omegaZ' for 'omega', no 'angle' and "
-		    "'stressZZ', and mass and forces are in kg and N. What a script has changed in the bodies counts already. Raises RuntimeError for another "
+		    "[m], 'weight' [-], 'material' [-]; in space 'z', 'vz', 'fz' as well, 'omegaX', 'omegaY', 'omegaZ' for 'omega', no 'angle', "
+		    "'deviatorXX', 'deviatorYY', 'deviatorZZ', 'deviatorYZ', 'deviatorZX', 'deviatorXY' [Pa] for 'stressZZ', and mass and "
+		    "forces are in kg and N. What a script has changed in the bodies counts already. Raises RuntimeError for another "
 		    "name.")
 		.def("fields", &McaEngine::fieldsByName, (py::arg("names")), "Copies of several quantities of one moment, dict of name -> numpy (N,) in the "
 		    "order of `ids`; names: a list of those that field() takes, and 'ids' (int). Bodies and engine are compared once, not once for each "

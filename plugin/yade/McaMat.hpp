@@ -27,9 +27,9 @@ public:
 		((Real, viscousShare, 0, Attr::readonly, "share of the viscous pressure in push [-]"))
 		((Matrix3r, push, Matrix3r::Zero(), Attr::readonly, "affine rule: link k is pushed by push e_k, at outlines by push c_k (5g), in the frame of "
 		    "the packing [N/m]; in space by (pushPressure + pushStress) push e_k, push in m2"))
-		((Real, pushPressure, 0, Attr::readonly, "in space: pressure of the equation of state and of the viscosity [Pa]"))
-		((Matrix3r, pushStress, Matrix3r::Zero(), Attr::readonly, "in space: minus the deviator, and what the sides of pairs do with the deformation (S6) "
-		    "[Pa]"))
+		((Real, pushPressure, 0, Attr::readonly, "in space: pressure of the equation of state and of the viscosity, J times [Pa]"))
+		((Matrix3r, pushStress, Matrix3r::Zero(), Attr::readonly, "in space: minus the deviator, and what the sides of pairs do with the deformation "
+		    "(S6), J times [Pa]"))
 		((Matrix3r, deviator, Matrix3r::Zero(), Attr::readonly, "in space: deviator of the stress (S4) [Pa]"))
 		((Real, pressureShare, 0, Attr::readonly, "pressure share of rule (6), of contacts in the affine rule [N/m]"))
 		((int, rule, 0, Attr::readonly, "volume rule: 0 affine, 1 inversePower, 2 meanDistance"))

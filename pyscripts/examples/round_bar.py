@@ -3,8 +3,6 @@
 
 Purpose: bodies in space, against an experiment. Nothing is fitted: Johnson-Cook copper of the library.
 Expected number: final length over the first, 0.630, of M. L. Wilkins and M. W. Guinan (1973), J. Appl. Phys. 44, 1200, as digitised by Zelepugin et al. (2023), Materials 16, 5452.
-The foot is wider than the measured one (Rmax/R0 = 2.20), by 9 to 13 %: pairs that are flattened by a strain of 1 and more
-resist flow less than the yield law says (limits, strong compression in space).
 Sweep: pyscripts/yade-mca-batch round_bar.table round_bar.py (spacing)
 """
 import numpy as np

@@ -118,8 +118,8 @@ inline std::vector<double> everything(const Solver& s)
 		const size_t i = size_t(s.indexOf(id));
 		for (const Vectors* a : { &S.position, &S.velocity, &S.omega, &S.force, &S.torque })
 			for (int c = 0; c < dim; c++) v.push_back((*a)[c][i]);
-		for (double x : { S.J[i], S.P[i], S.mean[i], S.eqps[i], S.temperature[i], S.factor[i], double(S.flags[i]), S.sxx[i], S.syy[i], S.szz[i], S.syz[i], S.szx[i], S.sxy[i] })
-			v.push_back(x);
+		for (double x : { S.J[i], S.P[i], S.mean[i], S.eqps[i], S.temperature[i], S.factor[i], double(S.flags[i]) }) v.push_back(x);
+		for (const double* x : deviators(S).entry) v.push_back(x[i]);
 		for (int k = 0; k < nLinks; k++)
 			for (int c = 0; c < dim; c++) v.push_back(S.stressAt(linkSlot(i, k))[c]);
 	}

@@ -36,6 +36,7 @@ namespace {
 	template <bool intact, bool mixed, bool viscous, bool account> void run(const BlockView& V, const Store& S, const Extra& E)
 	{
 		const PairViscosity own = ofLink(viscosityOf(V.material), VolumeRule::affine);
+		const double        whole = Lattice::cell(V.d) / Lattice::spread;
 		int32_t             self[blockSize];
 		for (int l = 0; l < blockSize; l++) self[l] = int32_t(V.base) + l;
 		for (int g = 0; g < blockSize; g += lanes) {
@@ -58,10 +59,8 @@ namespace {
 				const Vec<v8> mine = gatherTraction(V.tractions(k, g), inRow), theirSide = tractionsOfOthers(V.tractionOfAll, j, k);
 				const Vec<v8> both  = ofBothSides(pairArea(w, dij), mine, theirSide);
 				const v8      part  = weights<intact>(bits, k);
-				const LinkPush<v8> pushes = linkPush(push, theirs, k);
-				// push i by their negatives
-				const Vec<v8> press = choose<intact>(on, intact ? pushes.pressures : pushes.pressures * part, none),
-					      beside = choose<intact>(on, intact ? pushes.own : pushes.own * part, none);
+				const Vec<v8> pushes = linkPush(push, theirs, k), // i by its negative
+					      press = choose<intact>(on, intact ? pushes : pushes * part, none);
 				v8            q {};
 				if (viscous) {
 					const v8 closing = dot(r, other.velocity - v);
@@ -75,12 +74,16 @@ namespace {
 					ofPressure += -choose<intact>(on, fma(a.mean, p, o * b.mean), none);
 				}
 				const v8      perLength = root(invR2);
-				const Vec<v8> turns = linkTurning(both, perLength, beside), turning = cross(r, turns);
-				force += linkForce(r, turns, q, press);
-				v8      q1      = splat(0.5);
+				const Vec<v8> turning = cross(r, both) * perLength, n = r * perLength;
+				force += linkForce(r, both, perLength, q, press);
+				v8 q1 = splat(0.5), ofMine = w * (whole * 0.5), ofTheirs = ofMine;
 				if (mixed)
-					for (int l = 0; l < lanes; l++) q1[l] = arm(V.d, V.diameterOfAll[j[l]]);
-				torque = fma(q1, turning, torque);
+					for (int l = 0; l < lanes; l++) {
+						q1[l]    = arm(V.d, V.diameterOfAll[j[l]]);
+						ofMine[l]   = w[l] * (1. - q1[l]) * whole;
+						ofTheirs[l] = w[l] * q1[l] * (Lattice::cell(V.diameterOfAll[j[l]]) / Lattice::spread);
+					}
+				torque = fma(q1, turning, torque) + linkCouple(push, theirs, n, ofMine, ofTheirs);
 			}
 			store(V.force, g, force), store(V.torque, g, torque);
 			if (account) store(E.volumetric, V.base + g, ofPressure), store(E.viscous, V.base + g, ofViscosity);

@@ -2,6 +2,7 @@
 #pragma once
 #include "../../kernels/automaton/contact.hpp"
 #include "../../kernels/automaton/energy.hpp"
+#include "../fields.hpp"
 #include "../sides.hpp"
 
 namespace mca::automata {
@@ -59,15 +60,14 @@ MCA_INLINE ContactTrial contactTrial(Side<double> old, Vec<double> r, Vec<double
 /// What counts as the stress before the step. Pairs that have slid into each other do not touch and strain without limit near zero distance.
 MCA_INLINE Side<double> before(const ContactTrial& t, Side<double> old, bool touches) { return where(touches, t.before) + where(!touches, old); }
 
-/// Deviator of an automaton [Pa].
-template <class S> Symmetric<double> deviatorAt(const S& store, size_t i)
+/// Deviators from automaton `from` on [Pa].
+template <class S> SymmetricPlanes deviators(S& store, size_t from = 0)
 {
-	return { store.sxx[i], store.syy[i], store.szz[i], store.syz[i], store.szx[i], store.sxy[i] };
+#define MCA_PLANE(name, ...) const_cast<double*>(store.name.data()) + from,
+	return { { MCA_DEVIATORS(MCA_PLANE) } };
+#undef MCA_PLANE
 }
-template <class S> void setDeviator(S& store, size_t i, const Symmetric<double>& a)
-{
-	store.sxx[i] = a.xx, store.syy[i] = a.yy, store.szz[i] = a.zz, store.syz[i] = a.yz, store.szx[i] = a.zx, store.sxy[i] = a.xy;
-}
+template <class S> Symmetric<double> deviatorAt(const S& store, size_t i) { return deviators(store).at(i); }
 /// Energy of the deviator of an automaton and of its pairs [J].
 template <class S> double deviatorEnergyAt(const S& store, size_t i, double pairs)
 {
@@ -123,7 +123,7 @@ template <class C> bool sidesAre(const C& contacts, size_t n) { return contacts.
 /// J times the normal stress of the side of a pair, over its distance r.
 template <class S> double normalStressAt(const S& store, size_t i, int k, Vec<double> r)
 {
-	const Vec<double> n = r * (1. / std::sqrt(plainSquare(r)));
+	const Vec<double> n = Lattice::bearing(r);
 	return plainDot(store.stressAt(linkSlot(i, k)), n) + store.J[i] * plainDot(times(deviatorAt(store, i), n), n);
 }
 /// Sides of what has lost its volume hold all of its stress.
@@ -135,6 +135,6 @@ template <class S> void deviatorToSides(S& store, size_t i)
 			const size_t at = linkSlot(i, k);
 			store.setStress(at, store.stressAt(at) + times(s, Lattice::bearing(store.between(i, size_t(store.neighbour[at])))));
 		}
-	setDeviator(store, i, Symmetric<double> {});
+	deviators(store).set(i, {});
 }
 }

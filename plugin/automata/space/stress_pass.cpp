@@ -26,22 +26,30 @@ namespace {
 		Vec<v8>        r[nLinks]; ///< as they stand now
 		DeformationSums<v8> sums;
 	};
+	/// Normal of a plane of symmetry in the laboratory; normal: in the packing, zero where there is no such plane.
+	Vec<double> normalOf(int axis, Vec<double> normal)
+	{
+		Vec<double> n {};
+		n[axis] = isZero(normal) ? 0. : 1.;
+		return n;
+	}
 	/// The sums of those at planes of symmetry made those of full stars (S9).
 	__attribute__((noinline)) void completeStars(const BlockView& V, int g, LinkMotions& m)
 	{
 		for (int l = 0; l < lanes; l++) {
 			const size_t i = V.base + size_t(g + l);
 			if (!isMirrored(V.store, i)) continue;
-			for (Tensor<v8>* all : { &m.sums.moved, &m.sums.unspun, &m.sums.middle }) {
-				Tensor<double> one = laneOf(*all, l);
-				eachMirror(V.store, i, [&](int axis, Vec<double> normal) { mirror(one, axis, normal); });
-				setLane(*all, l, one);
-			}
+			Tensor<double>    moved = laneOf(m.sums.moved, l), middle = laneOf(m.sums.middle, l);
+			Symmetric<double> spun = laneOf(m.sums.spun, l);
+			eachMirror(V.store, i, [&](int axis, Vec<double> normal) {
+				mirror(moved, axis, normal), mirror(middle, axis, normal), mirror(spun, normalOf(axis, normal));
+			});
+			setLane(m.sums.moved, l, moved), setLane(m.sums.middle, l, middle), setLane(m.sums.spun, l, spun);
 		}
 	}
 	template <bool intact, bool mixed, bool account> MCA_INLINE void linkMotions(const BlockView& V, double dt, int g, LinkMotions& to)
 	{
-		const Vec<v8> x = load(V.position, g), v = load(V.velocity, g), w = load(V.omega, g);
+		const Vec<v8> x = load(V.position, g), v = load(V.velocity, g), w = load(V.omega, g), own = chord(w * splat(dt));
 		const m8      bits = intact ? m8 {} : widen(V.flags + g);
 #pragma GCC unroll 12
 		for (int k = 0; k < nLinks; k++) {
@@ -61,25 +69,11 @@ namespace {
 					for (int c = 0; c < dim; c++) spin[c][l] = s[c];
 				}
 			to.of[k] = pairMotion(r, u, spin), to.r[k] = r;
-			if (intact) to.sums.add(k, u, to.of[k]);
-			else to.sums.add(k, u, to.of[k], on ? weights<intact>(bits, k) : v8 {});
+			if (intact) to.sums.add(k, u, to.of[k], spin - own);
+			else to.sums.add(k, u, to.of[k], spin - own, on ? weights<intact>(bits, k) : v8 {});
 		}
 		if (V.block.weighted && hasMirrors(V.store)) completeStars(V, g, to);
 	}
-	MCA_INLINE Symmetric<v8> loadDeviator(const BlockView& V, int g)
-	{
-		return { load(V.sxx + g), load(V.syy + g), load(V.szz + g), load(V.syz + g), load(V.szx + g), load(V.sxy + g) };
-	}
-	MCA_INLINE void storeDeviator(const BlockView& V, int g, const Symmetric<v8>& a)
-	{
-		store(V.sxx + g, a.xx), store(V.syy + g, a.yy), store(V.szz + g, a.zz), store(V.syz + g, a.yz), store(V.szx + g, a.zx), store(V.sxy + g, a.xy);
-	}
-	/// a where the lane is on, else b.
-	MCA_INLINE Symmetric<v8> either(m8 on, const Symmetric<v8>& a, const Symmetric<v8>& b)
-	{
-		return { on ? a.xx : b.xx, on ? a.yy : b.yy, on ? a.zz : b.zz, on ? a.yz : b.yz, on ? a.zx : b.zx, on ? a.xy : b.xy };
-	}
-
 	/// Deviators, and J times the tractions, of the step before become those before yield. Not inlined: once for all laws.
 	template <bool intact, bool mixed, bool account> __attribute__((noinline)) void trialStresses(const BlockView& V, const Store& S, double dt, Sums& to)
 	{
@@ -89,7 +83,7 @@ namespace {
 			const m8      bits = intact ? m8 {} : widen(V.flags + g);
 			LinkMotions   motions;
 			linkMotions<intact, mixed, account>(V, dt, g, motions);
-			Deformation<v8> own = deformation(motions.sums);
+			Deformation<v8> own = deformation(motions.sums, Lattice::cell(V.d) / (Lattice::spread * load(V.cell + g)));
 			PairSums<v8>    sums;
 			Symmetric<v8>   sides {};
 			if (!intact) { // where links span no volume, they hold all of the stress
@@ -97,9 +91,9 @@ namespace {
 				own.strain     = either(spans, own.strain, isotropic(pairDilation(th, none, ofOwn)));
 				for (int c = 0; c < dim; c++) own.turn[c] = spans ? own.turn[c] : none;
 			}
-			const Symmetric<v8> before = loadDeviator(V, g);
+			const Symmetric<v8> before = load(V.deviator, size_t(g));
 			const auto          deviator = advance(before, own, splat(2. * V.material.G));
-			storeDeviator(V, g, deviator.trial);
+			store(V.deviator, size_t(g), deviator.trial);
 			add<account>(sums, before, deviator, invN);
 #pragma GCC unroll 1
 			for (int k = 0; k < nLinks; k++) {
@@ -168,7 +162,7 @@ namespace {
 	}
 	MCA_INLINE void scaleDeviators(const BlockView& V, const Returns& R)
 	{
-		for (double* s : { V.sxx, V.syy, V.szz, V.syz, V.szx, V.sxy })
+		for (double* s : V.deviator.entry)
 			for (int l = 0; l < blockSize; l++) s[l] *= R.scale[l];
 	}
 	/// Sums of weight times J times the tractions (x) the pairs, as they are now.
@@ -192,11 +186,7 @@ namespace {
 			const size_t i = V.base + size_t(l);
 			if (!isMirrored(V.store, i)) continue;
 			Symmetric<double> sum = sides.at(l);
-			eachMirror(V.store, i, [&](int axis, Vec<double> normal) {
-				Vec<double> n {};
-				n[axis] = isZero(normal) ? 0. : 1.;
-				mirror(sum, n);
-			});
+			eachMirror(V.store, i, [&](int axis, Vec<double> normal) { mirror(sum, normalOf(axis, normal)); });
 			sides.set(l, sum);
 		}
 	}
@@ -204,24 +194,24 @@ namespace {
 	void makePushes(const BlockView& V, SymmetricLanes<blockSize>& sides, bool account)
 	{
 		const double              full = Lattice::cell(V.d), bulk = V.material.eos.bulkModulus();
+		const SymmetricPlanes     deviator = V.deviator; // through the view nothing would vectorise
 		SymmetricLanes<blockSize> own;
 		alignas(64) double        acting[blockSize], cell[blockSize];
 		if (V.block.weighted) completeSides(V, sides);
 #pragma omp simd
 		for (int l = 0; l < blockSize; l++) {
-			const Symmetric<double> s { V.sxx[l], V.syy[l], V.szz[l], V.syz[l], V.szx[l], V.sxy[l] };
-			const Symmetric<double> push = ownPush(s, sides.at(l), V.J[l], full, V.cell[l], bulk);
+			const Symmetric<double> push = ownPush(deviator.at(size_t(l)), sides.at(l), V.J[l], full, V.cell[l], bulk);
 			V.mean[l] = V.factor[l] > 0. ? meanPressure(V.P[l], push) : V.P[l];
-			acting[l] = V.P[l] + V.viscous[l];
-			own.set(l, push);
+			acting[l] = V.J[l] * (V.P[l] + V.viscous[l]);
+			own.set(l, push * (V.factor[l] > 0. ? V.J[l] : 0.));
 		}
-		for (int l = 0; l < blockSize; l++) cell[l] = V.cell[l] / shareOfStar(V.flags[l], V.weight[l]);
-		for (int g = 0; g < blockSize; g += lanes) { // factor = 0: the volume does not push
+		for (int l = 0; l < blockSize; l++) cell[l] = V.cell[l] / (shareOfStar(V.flags[l], V.weight[l]) * V.J[l]);
+		for (int g = 0; g < blockSize; g += lanes) { // factor = 0: nothing pushes
 			double* push = V.push + pushSize * g;
-			scatterPushes(push, { gatherPushes(push, inRow).volume * load(cell + g), load(acting + g), own.lanes(g) });
+			scatter(push, pushSize, gatherPushes(push, inRow).volume * load(cell + g), load(acting + g), own.lanes(g));
 		}
 		for (int l = 0; account && l < blockSize; l++)
-			V.record[nodeSize * l + pressuresAt] = V.mean[l], V.record[nodeSize * l + pressuresAt + 1] = V.viscous[l];
+			V.record[nodeSize * l + pressuresAt] = V.J[l] * V.mean[l], V.record[nodeSize * l + pressuresAt + 1] = V.J[l] * V.viscous[l];
 	}
 	double fractureCriteria(const BlockView& V, const Sums& sums, const Returns& R)
 	{

@@ -9,7 +9,7 @@ struct BlockView : BlockBase {
 	const Planes<double>       torque   = store.torque.planes(base);
 	double*                    traction = at(store.traction, nLinks * tractionSize);
 	const double*              tractionOfAll = store.traction.data();
-	double *sxx = at(store.sxx), *syy = at(store.syy), *szz = at(store.szz), *syz = at(store.syz), *szx = at(store.szx), *sxy = at(store.sxy);
+	const SymmetricPlanes      deviator = deviators(store, base);
 	BlockView(Store& S, size_t b)
 		: BlockBase(S, b)
 	{
@@ -56,16 +56,7 @@ MCA_INLINE Vec<v8> gatherTraction(const double* traction, const int32_t* at)
 MCA_INLINE Pushes<v8> gatherPushes(const double* push, const int32_t* at)
 {
 	Pushes<v8> p;
-	Vec<v8>*   c = p.volume.column;
-	gather4(push, pushSize, at, c[0][0], c[0][1], c[0][2], c[1][0]), gather4(push + 4, pushSize, at, c[1][1], c[1][2], c[2][0], c[2][1]);
-	gather4(push + 8, pushSize, at, c[2][2], p.pressure, p.own.xx, p.own.yy), gather4(push + 12, pushSize, at, p.own.zz, p.own.yz, p.own.zx, p.own.xy);
+	gather(push, pushSize, at, p.volume, p.pressure, p.own);
 	return p;
-}
-/// Those of eight automata in a row.
-MCA_INLINE void scatterPushes(double* push, const Pushes<v8>& p)
-{
-	const Vec<v8>* c = p.volume.column;
-	scatter4(push, pushSize, c[0][0], c[0][1], c[0][2], c[1][0]), scatter4(push + 4, pushSize, c[1][1], c[1][2], c[2][0], c[2][1]);
-	scatter4(push + 8, pushSize, c[2][2], p.pressure, p.own.xx, p.own.yy), scatter4(push + 12, pushSize, p.own.zz, p.own.yz, p.own.zx, p.own.xy);
 }
 }

@@ -2,6 +2,7 @@
 // Pass 1 in space: volume of each automaton from its links, pressure, and what it pushes its neighbours with.
 #include "../../kernels/automaton/force.hpp"
 #include "../../kernels/automaton/limit.hpp"
+#include "../../kernels/space/stiffness.hpp"
 #include "../passes.hpp"
 #include "../view.hpp"
 
@@ -89,7 +90,7 @@ namespace {
 			const double            J = affineRatio(c, F, V.factor[l], V.rest[l], contactSum ? contactSum[l] : 0.), Jo = init ? J : V.J[l];
 			const PressureState     p = pressureStep(c, J, Jo, { V.P[l], hot ? V.heat[l] : 0. }, V.factor[l] > 0.);
 			const double            slope = volumeSlope(c, F, e, V.factor[l]);
-			stiffest    = max(stiffest, affineStiffness(c, J, slope, L.nearest2[l] * c.d2));
+			stiffest    = max(stiffest, affineStiffness(c, J, F, e, V.factor[l], L.nearest2[l] * c.d2));
 			V.dTheta[l] = dilation(J, Jo), V.J[l] = J, V.P[l] = p.P;
 			const double q = V.factor[l] > 0. ? viscosity.pressure(V.dTheta[l], slope, tangent<law>(c.eos, J - 1.)) : 0.;
 			V.viscous[l]   = perMove > 0. ? q : V.viscous[l]; // forces once more without a move: as before

@@ -156,11 +156,5 @@ template <EosKind law> MCA_INLINE double affineStiffness(const VolumeConstants<l
 	const double shear  = max(0.5 * c.d2 / nearest2, 1.);
 	return stiffness<law>(c, J, outline ? atOutlines * slope : inBody, outline ? atOutlines * shear : shear);
 }
-/// In space: the deviator feels the motion of neighbours as the volume does, but for J.
-template <EosKind law> MCA_INLINE double affineStiffness(const VolumeConstants<law>& c, double J, double slope, double nearest2)
-{
-	const double shear = max(0.5 * c.d2 / nearest2, slope / (J * J));
-	return stiffness<law>(c, J, max(min(slope * slope, 4.), slope), max(shear, 1.));
-}
 }
 }

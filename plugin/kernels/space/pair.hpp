@@ -30,18 +30,17 @@ MCA_INLINE Vec<double> pairSpin(Vec<double> omega, Vec<double> other, double arm
 
 /// What a pair does over the last step, at its middle.
 template <class T> struct PairMotion {
-	Vec<T> move;   ///< u without what the spins explain [m]
-	Vec<T> strain; ///< it over the distance [-]: along the pair and across it, both have the stiffness 2G
+	Vec<T> strain; ///< [-], along the pair and across it: both have the stiffness 2G
 	Vec<T> turn;   ///< [-], about the pair with the mean spin
 	Vec<T> normal; ///< n
-	Vec<T> middle; ///< r at the middle of the step [m]
+	Vec<T> middle; ///< r [m]
 };
 /// r now [m]; u = relative displacement of the step [m]; spin: pairSpin().
 template <class T> MCA_INLINE PairMotion<T> pairMotion(Vec<T> r, Vec<T> u, Vec<T> spin)
 {
-	const Vec<T> m   = fma(-0.5, u, r), move = u - cross(spin, m);
+	const Vec<T> m   = fma(-0.5, u, r);
 	const T      inv = 1. / dot(m, m), perLength = root(inv);
-	return { move, move * perLength, fma(dot(spin, m), m, cross(m, u)) * inv, m * perLength, m };
+	return { (u - cross(spin, m)) * perLength, fma(dot(spin, m), m, cross(m, u)) * inv, m * perLength, m };
 }
 /// a turned by w = 2 tan(angle/2) along the axis (Cayley): its length stays.
 template <class T> MCA_INLINE Vec<T> rotated(Vec<T> a, Vec<T> w)
@@ -71,26 +70,31 @@ template <class T> struct Deformation {
 	Symmetric<T> strain;
 	Vec<T>       turn; ///< 2 tan(angle/2) along the axis, exactly, where nothing strains
 };
-/// Sums over the links (x) e_k, with their weights [m].
+/// Sums over the links with their weights.
 template <class T> struct DeformationSums {
-	Tensor<T>       moved = {}, unspun = {}, middle = {}; ///< of u, of PairMotion::move, of r at the middle
-	MCA_INLINE void add(int k, Vec<T> u, const PairMotion<T>& p) { addDyad(moved, k, u), addDyad(unspun, k, p.move), addDyad(middle, k, p.middle); }
-	MCA_INLINE void add(int k, Vec<T> u, const PairMotion<T>& p, T w) { addDyad(moved, k, u * w), addDyad(unspun, k, p.move * w), addDyad(middle, k, p.middle * w); }
+	Tensor<T>    moved = {}, middle = {}; ///< of u and of r at the middle (x) e_k [m]
+	Symmetric<T> spun = {};               ///< of what spins beyond the own do across the links (x) n [-]
+	/// beyond: pairSpin() without the turn of the automaton itself.
+	MCA_INLINE void add(int k, Vec<T> u, const PairMotion<T>& p, Vec<T> beyond, T w)
+	{
+		addDyad(moved, k, u * w), addDyad(middle, k, p.middle * w), spun += symmetricDyad(cross(beyond, p.normal), p.normal * w);
+	}
+	MCA_INLINE void add(int k, Vec<T> u, const PairMotion<T>& p, Vec<T> beyond)
+	{
+		addDyad(moved, k, u), addDyad(middle, k, p.middle), spun += symmetricDyad(cross(beyond, p.normal), p.normal);
+	}
 };
-/// The same for any set of links that spans a volume. The strain leaves out what the spins explain, as that of a pair does, so that both are one in a wave;
-/// the turn is that of the body.
-template <class T> MCA_INLINE Deformation<T> deformation(const DeformationSums<T>& s)
+/// The same for any set of links that spans a volume. The strain leaves out what spins explain, as that of a pair does, so that at rest the two are one law of
+/// pairs, in waves, too. perSlot = 1/(shares of slots in one direction): 1/spread, of parts of cells more.
+template <class T> MCA_INLINE Deformation<T> deformation(const DeformationSums<T>& s, T perSlot)
 {
 	const Tensor<T> C   = cofactor(s.middle);
 	const T         per = 1. / dot(s.middle.column[0], C.column[0]);
-	Vec<T>          D[dim], W[dim]; // columns of the gradients: sums times the inverse of that of r
-	for (int b = 0; b < dim; b++) {
-		const T x = C.column[0][b] * per, y = C.column[1][b] * per, z = C.column[2][b] * per;
-		D[b] = fma(x, s.unspun.column[0], fma(y, s.unspun.column[1], s.unspun.column[2] * z));
-		W[b] = fma(x, s.moved.column[0], fma(y, s.moved.column[1], s.moved.column[2] * z));
-	}
-	return { { D[0][0], D[1][1], D[2][2], 0.5 * (D[1][2] + D[2][1]), 0.5 * (D[2][0] + D[0][2]), 0.5 * (D[0][1] + D[1][0]) },
-		 { 0.5 * (W[1][2] - W[2][1]), 0.5 * (W[2][0] - W[0][2]), 0.5 * (W[0][1] - W[1][0]) } };
+	Vec<T>          L[dim]; // columns of the gradient: sum of u times the inverse of that of r
+	for (int b = 0; b < dim; b++)
+		L[b] = fma(C.column[0][b] * per, s.moved.column[0], fma(C.column[1][b] * per, s.moved.column[1], s.moved.column[2] * (C.column[2][b] * per)));
+	const Symmetric<T> all { L[0][0], L[1][1], L[2][2], 0.5 * (L[1][2] + L[2][1]), 0.5 * (L[2][0] + L[0][2]), 0.5 * (L[0][1] + L[1][0]) };
+	return { all - s.spun * perSlot, { 0.5 * (L[1][2] - L[2][1]), 0.5 * (L[2][0] - L[0][2]), 0.5 * (L[0][1] - L[1][0]) } };
 }
 /// R a R^T of the turn w.
 template <class T> MCA_INLINE Symmetric<T> rotated(const Symmetric<T>& a, Vec<T> w)
@@ -148,9 +152,9 @@ pairWork(const PairSums<double>& sums, double trial, const Return& r, double J, 
 	return { pairs * J * 0.5 * (along + trial * r.scale) * r.dEqps, pairs * J * (apart - (threeG > 0 ? dilation * squares / (2. * threeG) : 0.)) };
 }
 
-/// Stress with which the automaton pushes its neighbours beside P, kept as its negative: minus its deviator, and what the tractions of its own sides do with its
-/// deformation [Pa]. sides = sum of weight times J times traction (x) n, full = cell of the whole packing. What is below the last bit of a strain is nothing, as it is
-/// in P: else the front of numbers that are not zero runs twice as fast into material at rest. bulk: rho0 c0^2 [Pa].
+/// Stress with which the automaton pushes its neighbours beside P, kept as its negative: minus its deviator, and what the tractions of its own sides do with
+/// its deformation [Pa]. sides = sum of weight times J times traction (x) n, full = cell of the whole packing. What is below the last bit of a strain is
+/// nothing, as it is in P: else the front of numbers that are not zero runs twice as fast into material at rest. bulk: rho0 c0^2 [Pa].
 MCA_INLINE Symmetric<double> ownPush(const Symmetric<double>& deviator, const Symmetric<double>& sides, double J, double full, double cell, double bulk)
 {
 	const Symmetric<double> own = sides * (full / (cell * (Lattice::spread * J))) - deviator;
@@ -161,24 +165,28 @@ MCA_INLINE Symmetric<double> ownPush(const Symmetric<double>& deviator, const Sy
 MCA_INLINE double meanPressure(double P, const Symmetric<double>& own) { return P + (1. / 3.) * trace(own); }
 /// With what an automaton pushes its neighbours: link k by (pressure + own) volume e_k [N].
 template <class T> struct Pushes {
-	Tensor<T>    volume;   ///< affinePush() times the cell [m2]
-	T            pressure; ///< P with the viscous one [Pa]
-	Symmetric<T> own;      ///< ownPush()
+	Tensor<T>    volume;   ///< affinePush() times the cell over J [m2]
+	T            pressure; ///< J times P with the viscous one [Pa]
+	Symmetric<T> own;      ///< J times ownPush(); nothing where links span no volume
 };
-/// What both ends of link k push the first with, as its negative: by their pressures, and by what they have beside them, which turns them as well [N].
-template <class T> struct LinkPush {
-	Vec<T> pressures, own;
-};
-template <class T> MCA_INLINE LinkPush<T> linkPush(const Pushes<T>& a, const Pushes<T>& b, int k)
+/// What both ends of link k push the first with, as its negative [N].
+template <class T> MCA_INLINE Vec<T> linkPush(const Pushes<T>& a, const Pushes<T>& b, int k)
 {
 	const Vec<T> mine = times(a.volume, k), theirs = times(b.volume, k);
-	return { fma(a.pressure, mine, theirs * b.pressure), times(a.own, mine) + times(b.own, theirs) };
+	return fma(a.pressure, mine, theirs * b.pressure) + times(a.own, mine) + times(b.own, theirs);
+}
+/// Couple with which they turn the first, since their strain leaves out what spins explain [N m]; the other has its negative. n: unit vector of the pair,
+/// mine, theirs: weight of the link over spread times the cells of the whole packing times the arm of the other side [m3].
+template <class T> MCA_INLINE Vec<T> linkCouple(const Pushes<T>& a, const Pushes<T>& b, Vec<T> n, T mine, T theirs)
+{
+	return cross(n, times(a.own, n * mine) - times(b.own, n * theirs));
 }
 
-/// Force of a link: turning: linkTurning(); viscous: over the vector.
-template <class T> MCA_INLINE Vec<T> linkForce(Vec<T> r, Vec<T> turning, T viscous, Vec<T> pressures) { return fma(viscous, r, turning - pressures); }
-/// That part of it that turns its ends; both = ofBothSides(), own: of linkPush().
-template <class T> MCA_INLINE Vec<T> linkTurning(Vec<T> both, T perLength, Vec<T> own) { return fma(perLength, both, -own); }
+/// Force of a link: both = ofBothSides(), push: linkPush(); viscous: over the vector.
+template <class T> MCA_INLINE Vec<T> linkForce(Vec<T> r, Vec<T> both, T perLength, T viscous, Vec<T> push)
+{
+	return fma(perLength, both, fma(viscous, r, -push));
+}
 /// Force of a contact: both = ofBothSides(), viscous = viscousCoefficient(), pressure over r [N/m].
 MCA_INLINE Vec<double> contactForce(Vec<double> r, Vec<double> both, double invR2, double viscous, double pressure)
 {

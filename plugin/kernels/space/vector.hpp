@@ -81,6 +81,12 @@ template <class T> MCA_INLINE Vec<T>       times(const Symmetric<T>& a, Vec<T> v
 {
 	return { fma(a.xx, v[0], fma(a.xy, v[1], a.zx * v[2])), fma(a.xy, v[0], fma(a.yy, v[1], a.yz * v[2])), fma(a.zx, v[0], fma(a.yz, v[1], a.zz * v[2])) };
 }
+template <class T> MCA_INLINE Vec<T> times(const Tensor<T>& a, Vec<T> v) { return fma(v[0], a.column[0], fma(v[1], a.column[1], a.column[2] * v[2])); }
+template <class T> MCA_INLINE Symmetric<T> cofactor(const Symmetric<T>& a)
+{
+	return { fma(a.yy, a.zz, -a.yz * a.yz), fma(a.zz, a.xx, -a.zx * a.zx), fma(a.xx, a.yy, -a.xy * a.xy),
+		 fma(a.xy, a.zx, -a.xx * a.yz), fma(a.xy, a.yz, -a.yy * a.zx), fma(a.yz, a.zx, -a.zz * a.xy) };
+}
 /// sum of the products of all nine components
 template <class T> MCA_INLINE T dot(const Symmetric<T>& a, const Symmetric<T>& b)
 {
@@ -89,9 +95,14 @@ template <class T> MCA_INLINE T dot(const Symmetric<T>& a, const Symmetric<T>& b
 /// The symmetric part of a (x) b.
 template <class T> MCA_INLINE Symmetric<T> symmetricDyad(Vec<T> a, Vec<T> b)
 {
-	return { a[0] * b[0], a[1] * b[1], a[2] * b[2], 0.5 * fma(a[1], b[2], a[2] * b[1]), 0.5 * fma(a[2], b[0], a[0] * b[2]), 0.5 * fma(a[0], b[1], a[1] * b[0]) };
+	return { a[0] * b[0], a[1] * b[1], a[2] * b[2],
+		 0.5 * fma(a[1], b[2], a[2] * b[1]), 0.5 * fma(a[2], b[0], a[0] * b[2]), 0.5 * fma(a[0], b[1], a[1] * b[0]) };
 }
-template <class T> MCA_INLINE Tensor<T> times(const Symmetric<T>& a, const Tensor<T>& b) { return { times(a, b.column[0]), times(a, b.column[1]), times(a, b.column[2]) }; }
+/// a where the lane is on, else b.
+MCA_INLINE Symmetric<v8> either(m8 on, const Symmetric<v8>& a, const Symmetric<v8>& b)
+{
+	return { on ? a.xx : b.xx, on ? a.yy : b.yy, on ? a.zz : b.zz, on ? a.yz : b.yz, on ? a.zx : b.zx, on ? a.xy : b.xy };
+}
 
 /// Vectors in memory: a plane of numbers per component.
 template <class P> struct Planes {
@@ -104,6 +115,25 @@ template <class P> MCA_INLINE Vec<v8> load(const Planes<P>& p, size_t i) { retur
 MCA_INLINE void                       store(const Planes<double>& p, size_t i, Vec<v8> v)
 {
 	store(p.plane[0] + i, v[0]), store(p.plane[1] + i, v[1]), store(p.plane[2] + i, v[2]);
+}
+
+/// Symmetric tensors in memory: a plane of numbers per entry.
+struct SymmetricPlanes {
+	double* entry[6];
+	MCA_INLINE Symmetric<double> at(size_t i) const { return { entry[0][i], entry[1][i], entry[2][i], entry[3][i], entry[4][i], entry[5][i] }; }
+	MCA_INLINE void              set(size_t i, const Symmetric<double>& a) const
+	{
+		entry[0][i] = a.xx, entry[1][i] = a.yy, entry[2][i] = a.zz, entry[3][i] = a.yz, entry[4][i] = a.zx, entry[5][i] = a.xy;
+	}
+};
+MCA_INLINE Symmetric<v8> load(const SymmetricPlanes& p, size_t i)
+{
+	return { load(p.entry[0] + i), load(p.entry[1] + i), load(p.entry[2] + i), load(p.entry[3] + i), load(p.entry[4] + i), load(p.entry[5] + i) };
+}
+MCA_INLINE void store(const SymmetricPlanes& p, size_t i, const Symmetric<v8>& a)
+{
+	store(p.entry[0] + i, a.xx), store(p.entry[1] + i, a.yy), store(p.entry[2] + i, a.zz), store(p.entry[3] + i, a.yz), store(p.entry[4] + i, a.zx),
+		store(p.entry[5] + i, a.xy);
 }
 
 /// One automaton of eight.
@@ -147,6 +177,12 @@ template <int n> struct SymmetricLanes {
 	}
 };
 
+MCA_INLINE Symmetric<double> laneOf(const Symmetric<v8>& a, int l) { return { a.xx[l], a.yy[l], a.zz[l], a.yz[l], a.zx[l], a.xy[l] }; }
+MCA_INLINE void              setLane(Symmetric<v8>& a, int l, const Symmetric<double>& b)
+{
+	a.xx[l] = b.xx, a.yy[l] = b.yy, a.zz[l] = b.zz, a.yz[l] = b.yz, a.zx[l] = b.zx, a.xy[l] = b.xy;
+}
+
 // Records of eight automata, read and written by four numbers at once: those of tensors have twelve, the last three unused.
 constexpr int   tensorSize = 12;
 MCA_INLINE void gather(const double* base, int stride, const int32_t* at, Vec<v8>& a)
@@ -165,6 +201,20 @@ MCA_INLINE void scatter(double* base, int stride, const Tensor<v8>& t)
 	const Vec<v8>* a = t.column;
 	scatter4(base, stride, a[0][0], a[0][1], a[0][2], a[1][0]), scatter4(base + 4, stride, a[1][1], a[1][2], a[2][0], a[2][1]);
 	scatter4(base + 8, stride, a[2][2], v8 {}, v8 {}, v8 {});
+}
+
+/// Records of a tensor, a number and a symmetric tensor.
+MCA_INLINE void gather(const double* base, int stride, const int32_t* at, Tensor<v8>& t, v8& a, Symmetric<v8>& s)
+{
+	Vec<v8>* c = t.column;
+	gather4(base, stride, at, c[0][0], c[0][1], c[0][2], c[1][0]), gather4(base + 4, stride, at, c[1][1], c[1][2], c[2][0], c[2][1]);
+	gather4(base + 8, stride, at, c[2][2], a, s.xx, s.yy), gather4(base + 12, stride, at, s.zz, s.yz, s.zx, s.xy);
+}
+MCA_INLINE void scatter(double* base, int stride, const Tensor<v8>& t, v8 a, const Symmetric<v8>& s)
+{
+	const Vec<v8>* c = t.column;
+	scatter4(base, stride, c[0][0], c[0][1], c[0][2], c[1][0]), scatter4(base + 4, stride, c[1][1], c[1][2], c[2][0], c[2][1]);
+	scatter4(base + 8, stride, c[2][2], a, s.xx, s.yy), scatter4(base + 12, stride, s.zz, s.yz, s.zx, s.xy);
 }
 
 // Cells of a regular grid.

@@ -17,7 +17,8 @@ bool Loop::breaks(const Row& r, int k) const
 	const Side& s = r.link[k];
 	if (!r.material->fracture.active()) return false;
 	const auto end = [&](const Row& a, int side, Vec toOther) {
-		return mca::LinkEnd { a.l->criterion, mca::normalStress(wholeStress(*a.m, *a.l, stressOf(*s.p, side), toOther), toOther), a.m->volumeRatio, a.m->pressure, a.m->strength };
+		const Real normal = mca::normalStress(wholeStress(*a.m, *a.l, stressOf(*s.p, side), toOther), toOther);
+		return mca::LinkEnd { a.l->criterion, normal, a.m->volumeRatio, a.m->pressure, a.m->strength };
 	};
 	const Vec x = between(r, s);
 	return mca::breaks(r.material->fracture, end(r, s.side, x), end(rows[size_t(s.other)], 1 - s.side, -x), distance2(r, s), s.p->d);

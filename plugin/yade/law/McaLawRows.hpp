@@ -93,10 +93,11 @@ private:
 	mca::VolumeRule            rule() const { return law.rule(); }
 	struct Moved {
 		Vec  distance; ///< [m]
-		Turn spin;     ///< pairSpin() [-]
+		Turn spin, own; ///< pairSpin(), and that of the automaton itself [-]
 	};
 	Moved                      moved(const Row&, const Side&) const;
 	Trial                      trial(const Row&, const Side&, Stress old, const Apart&) const;
+	Deviator                   deviatorOf(const Row&) const;
 	Real                       deviatorEnergyAt(const Row&) const;
 	void                       finishPressure(Row&) const;
 	void                       contactFriction(Row&, const Side&, Stress before, Real scale);

@@ -58,7 +58,7 @@ template <mca::EosKind kind> void Loop::volumeBy(Row& r, bool withContacts)
 			now = step(l.factor > 0);
 			l.push = matrixOf(mca::affinePush(c, sums.F, l.factor));
 			const Real slope = mca::volumeSlope(c, sums.F, sums.directions, l.factor);
-			r.stiff          = stiffnessOf(c, J, slope, nearest2, outline);
+			r.stiff          = stiffnessOf(c, J, sums, l.factor, slope, nearest2, outline);
 			if (law.lastMove > 0) {
 				const mca::BulkViscosity viscosity(*r.material, r.d, 1. / law.lastMove);
 				l.viscous = l.factor > 0 ? viscosity.pressure(mca::dilation(J, Jo), slope, mca::tangent<kind>(c.eos, J - 1.)) : 0.;
@@ -92,13 +92,27 @@ Loop::Moved Loop::moved(const Row& r, const Side& s) const
 {
 	const Row& o  = rows[size_t(s.other)];
 	const Real on = r.fresh || o.fresh ? 0. : law.lastMove;
-	return { (vec(o.velocity) - vec(r.velocity)) * on, mca::pairSpin(turnOf(r.spin), turnOf(o.spin), mca::arm(r.d, o.d), on) };
+	const auto spin = [&](const Row& other, Real arm) { return mca::pairSpin(turnOf(r.spin), turnOf(other.spin), arm, on); };
+	return { (vec(o.velocity) - vec(r.velocity)) * on, spin(o, mca::arm(r.d, o.d)), spin(r, 0.5) };
 }
 /// (7)-(8): of this side of a pair, before yield.
 Trial Loop::trial(const Row& r, const Side& s, Stress old, const Apart& apart) const
 {
 	const Moved m = moved(r, s);
 	return trialOf(old, between(r, s), m.distance, m.spin, apart, s.p->twoG);
+}
+
+/// Before yield.
+Deviator Loop::deviatorOf(const Row& r) const
+{
+	Deviator deviator;
+	for (int k = 0; mca::dim == 3 && k < nLinks; k++)
+		if (const Side& s = r.link[k]; s.p) {
+			const Moved did = moved(r, s);
+			deviator.link(k, between(r, s), did.distance, did.spin, did.own, mca::linkWeight(flagsOf(*r.l), k));
+		}
+	deviator.advance(*r.m, *r.l, r.material->G, r.l->dTheta);
+	return deviator;
 }
 
 // Trial stresses (7)-(9) of this side of all pairs, radial return (10)-(11), friction, fracture criteria.
@@ -112,13 +126,7 @@ void Loop::stress(Row& r)
 	mca::PairSums<Real>  sums;
 	const auto dilationOf = [&](const Side& s, mca::DilationShares share) { return mca::pairDilation(l.dTheta, rows[size_t(s.other)].l->dTheta, share); };
 	const auto           old = [&](const Side& s) { return mca::scaled(stressOf(*s.p, s.side), perOldJ); };
-	Deviator             deviator;
-	for (int k = 0; mca::dim == 3 && k < nLinks; k++)
-		if (const Side& s = r.link[k]; s.p) {
-			const Moved did = moved(r, s);
-			deviator.link(k, between(r, s), did.distance, did.spin, mca::linkWeight(flagsOf(l), k));
-		}
-	deviator.advance(m, l, material.G, l.dTheta);
+	const Deviator       deviator = deviatorOf(r);
 	for (int k = 0; k < nLinks; k++) {
 		const Side& s = r.link[k];
 		if (!s.p) continue;

@@ -58,10 +58,10 @@ void PairLaw::force(McaPhys& p, const State& sa, const McaLawState& a, const Sta
                 push = by == VolumeRule::affine ? pushOnLink(a, b, p.slot) : pushOf(r * pressing<by>(p, a, b, r2, w));
                 return linkForceOf(r, both, inv, q, push);
         });
-	const auto torque = [&](Real arm) { return p.linked ? linkTorque(arm, r, inv, both, push) : mca::contactTorque(arm, r, both, f); };
+	const auto torque = [&](Real arm, bool first) { return p.linked ? linkTorque(arm, r, inv, both, push, first) : mca::contactTorque(arm, r, both, f); };
 	p.force           = vector3(f);
-	p.torque          = turn3(torque(mca::arm(a.diameter, b.diameter)));
-	p.torqueOther     = turn3(torque(mca::arm(b.diameter, a.diameter)));
+	p.torque          = turn3(torque(mca::arm(a.diameter, b.diameter), true));
+	p.torqueOther     = turn3(torque(mca::arm(b.diameter, a.diameter), false));
 	p.heatRate = q * along, p.viscousForce = vector3(r * q);
 	if (affine) p.viscousForce -= vector3(viscousPushOnLink(a, b, p.slot));
 	const Vector3r n = vector3(r * std::sqrt(inv));

@@ -40,7 +40,7 @@ class Deviator {
 
 public:
 	/// What a link does in a step; nothing follows from it here.
-	void link(int, Vec, Vec, Turn, Real) { }
+	void link(int, Vec, Vec, Turn, Turn, Real) { }
 	void advance(const McaState& m, const McaLawState&, Real G, Real dilation) { before = m.stressZZ, trial = mca::trialSzz(2. * G, dilation, m.stressZZ); }
 	/// What links leave out of their stress of a dilation.
 	Apart apart(Real dilation) const { return dilation; }
@@ -108,9 +108,13 @@ inline Vec viscousPushOnLink(const McaLawState& a, const McaLawState& b, int slo
 }
 inline LinkPush pushOf(Vec push) { return push; }
 
-inline Vec  linkForceOf(Vec r, Stress both, Real inv, Real viscous, LinkPush push) { return mca::linkForce(r, both.normal * inv + viscous, both.shear * inv, push); }
-inline Turn linkTorque(Real arm, Vec, Real, Stress both, LinkPush) { return arm * both.shear; }
-template <mca::EosKind kind> Real stiffnessOf(const mca::VolumeConstants<kind>& c, Real J, Real slope, Real nearest2, bool outline)
+inline Vec  linkForceOf(Vec r, Stress both, Real inv, Real viscous, LinkPush push)
+{
+	return mca::linkForce(r, both.normal * inv + viscous, both.shear * inv, push);
+}
+inline Turn linkTorque(Real arm, Vec, Real, Stress both, LinkPush, bool) { return arm * both.shear; }
+template <mca::EosKind kind>
+Real stiffnessOf(const mca::VolumeConstants<kind>& c, Real J, const LinkSums&, Real, Real slope, Real nearest2, bool outline)
 {
 	return mca::affineStiffness(c, J, slope, nearest2, outline);
 }

@@ -2,6 +2,7 @@
 // In space: a traction of each side in the frame of the laboratory, faces of weighted links (S8).
 #pragma once
 #include "../McaPhysSides.hpp"
+#include <kernels/space/stiffness.hpp>
 
 namespace yade {
 namespace MCA_SPACE {
@@ -58,12 +59,12 @@ class Deviator {
 
 public:
 	/// What a link does in a step.
-	void link(int k, Vec r, Vec moved, Turn spin, Real weight) { sums.add(k, moved, mca::pairMotion(r, moved, spin), weight); }
+	void link(int k, Vec r, Vec moved, Turn spin, Turn own, Real weight) { sums.add(k, moved, mca::pairMotion(r, moved, spin), spin - own, weight); }
 	void advance(const McaState&, const McaLawState& l, Real G, Real dilation)
 	{
 		spans = l.factor > 0, old = symmetricOf(l.deviator);
 		mca::Deformation<Real> own { apartOf(mca::pairDilation(dilation, Real(0), mca::ofOwn)), {} };
-		if (spans) own = mca::deformation(sums);
+		if (spans) own = mca::deformation(sums, mca::Lattice::cell(l.diameter) / (mca::Lattice::spread * l.cell));
 		strain = own.strain, step = mca::advance(old, own, 2. * G);
 	}
 	/// What links leave out of their tractions: what the deviator sees, or a dilation where they span no volume.
@@ -125,35 +126,49 @@ struct SideSums {
 	Real meanPressure(const McaState& m, const McaLawState& l, Real bulk) const { return mca::meanPressure(l.P, own(m, l, bulk)); }
 	void finishPush(const McaState& m, McaLawState& l, Real, Real bulk) const
 	{
-		l.push *= l.cell / starShare(l);
-		l.pushPressure = l.P + l.viscous, l.pushStress = matrixOf(own(m, l, bulk));
+		const Real sum = l.P + l.viscous;
+		l.viscousShare = sum != 0 ? l.viscous / sum : 0.;
+		l.push *= l.cell / (starShare(l) * m.volumeRatio);
+		l.pushPressure = m.volumeRatio * (l.P + l.viscous), l.pushStress = matrixOf(own(m, l, bulk) * (l.factor > 0 ? m.volumeRatio : 0.));
 	}
 };
 /// What both ends push the first end of a link with, as its negative.
-using LinkPush = mca::LinkPush<Real>;
-inline LinkPush pushBy(const McaLawState& a, const McaLawState& b, Real pressureA, Real pressureB, int slot)
+struct LinkPush {
+	Vec                force;
+	mca::Pushes<Real> mine, theirs; ///< for the couple
+	Real               weight = 0, dMine = 0, dTheirs = 0;
+};
+inline mca::Pushes<Real> pushesOf(const McaLawState& l) { return { tensorOf(l.push), l.pushPressure, symmetricOf(l.pushStress) }; }
+inline LinkPush          pushOnLink(const McaLawState& a, const McaLawState& b, int slot)
 {
-	const auto push = [](const McaLawState& l, Real pressure) { return mca::Pushes<Real> { tensorOf(l.push), pressure, symmetricOf(l.pushStress) }; };
-	const LinkPush all = mca::linkPush(push(a, pressureA), push(b, pressureB), slot);
-	const Real     w   = mca::linkWeight(mca::Flags(a.flags), slot);
-	return { all.pressures * w, all.own * w };
+	const auto A = pushesOf(a), B = pushesOf(b);
+	const Real w = mca::linkWeight(mca::Flags(a.flags), slot);
+	return { mca::linkPush(A, B, slot) * w, A, B, w, a.diameter, b.diameter };
 }
-inline LinkPush pushOnLink(const McaLawState& a, const McaLawState& b, int slot) { return pushBy(a, b, a.pushPressure, b.pushPressure, slot); }
 /// Its viscous share.
-inline Vec viscousPushOnLink(const McaLawState& a, const McaLawState& b, int slot) { return pushBy(a, b, a.viscous, b.viscous, slot).pressures; }
-inline LinkPush pushOf(Vec push) { return { push, {} }; }
+inline Vec viscousPushOnLink(const McaLawState& a, const McaLawState& b, int slot)
+{
+	const auto share = [](const McaLawState& l) { return l.viscousShare * l.pushPressure; };
+	return (times(tensorOf(a.push), slot) * share(a) + times(tensorOf(b.push), slot) * share(b)) * mca::linkWeight(mca::Flags(a.flags), slot);
+}
+inline LinkPush pushOf(Vec push) { return { push, {}, {} }; }
 
 inline Vec linkForceOf(Vec r, Stress both, Real inv, Real viscous, const LinkPush& push)
 {
-	return mca::linkForce(r, mca::linkTurning(both, mca::root(inv), push.own), viscous, push.pressures);
+	return mca::linkForce(r, both, mca::root(inv), viscous, push.force);
 }
-inline Turn linkTorque(Real arm, Vec r, Real inv, Stress both, const LinkPush& push)
+/// first: whether it is that of the first end; arm: of that end.
+inline Turn linkTorque(Real arm, Vec r, Real inv, Stress both, const LinkPush& push, bool first)
 {
-	return cross(r, mca::linkTurning(both, mca::root(inv), push.own)) * arm;
+	const Real mine = first ? arm : 1. - arm, share = push.weight / mca::Lattice::spread;
+	const Real ofMine = share * (1. - mine) * mca::Lattice::cell(push.dMine), ofTheirs = share * mine * mca::Lattice::cell(push.dTheirs);
+	const Vec  couple = mca::linkCouple(push.mine, push.theirs, r * mca::root(inv), ofMine, ofTheirs);
+	return cross(r, both) * (mca::root(inv) * arm) + (first ? couple : -couple);
 }
-template <mca::EosKind kind> Real stiffnessOf(const mca::VolumeConstants<kind>& c, Real J, Real slope, Real nearest2, bool)
+template <mca::EosKind kind>
+Real stiffnessOf(const mca::VolumeConstants<kind>& c, Real J, const LinkSums& sums, Real factor, Real, Real nearest2, bool)
 {
-	return mca::affineStiffness(c, J, slope, nearest2);
+	return mca::affineStiffness(c, J, sums.F, sums.directions, factor, nearest2);
 }
 inline mca::ContactSide contactSideOf(Stress before, Stress trial, Vec r, Real pressure, Real r2, Real d, Real friction, Real J, Real scale, bool touches)
 {
