@@ -169,7 +169,8 @@ TEST(SpaceStrain, ForcesAndTorquesAreThoseOfAnEnergy)
 		};
 		const auto rest = [&](size_t i) { S.velocity.set(i, {}), S.omega.set(i, {}); };
 		s.computeForces();
-		for (int k = 0; k < 10; k++) go([&](size_t i) { S.velocity.set(i, Vec<double> { S.position[0][i], -0.5 * S.position[1][i], -0.4 * S.position[2][i] } * stretch); });
+		for (int k = 0; k < 10; k++)
+			go([&](size_t i) { S.velocity.set(i, Vec<double> { S.position[0][i], -0.5 * S.position[1][i], -0.4 * S.position[2][i] } * stretch); });
 		for (double* entry : deviators(S).entry) std::fill(entry, entry + S.size(), 0.);
 		std::fill(S.traction.begin(), S.traction.end(), 0.);
 		go(rest);

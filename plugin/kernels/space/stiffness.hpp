@@ -17,7 +17,7 @@ MCA_INLINE double largestStretch(const Tensor<double>& sum, const Symmetric<doub
 	const Symmetric<double> B = symmetricDyad(a, a) + symmetricDyad(b, b) + symmetricDyad(c, c), off = deviatorOf(B);
 	return max((1. / 3.) * trace(B) + std::sqrt((2. / 3.) * dot(off, off)), 1.);
 }
-/// stiffness(), and how much stiffer than in the perfect packing at rest: at surfaces by the slope of their volume at rest, by deformation, and for the pair law
+/// stiffness(), and how much stiffer than in the whole packing at rest: at surfaces by the slope of their volume at rest, by deformation, and for the pair law
 /// by the closest link, nearest2 = smallest r^2 [m2]. sum: of r (x) e_k, directions: of e_k (x) e_k. Covers edges and corners up to nu = 0.49, measured.
 template <EosKind law>
 MCA_INLINE double

@@ -150,8 +150,7 @@ void Loop::stress(Row& r)
 		setStress(*s.p, s.side, touch ? now.trial : Stress {});
 		if (touch) ofContacts += mca::square(now.trial), bothOfContacts += mca::product(now.before, now.trial);
 	}
-	sums.square += ofContacts, sums.both += bothOfContacts;
-	deviator.addTo(sums, l.invN);
+	sums.square += ofContacts, sums.both += bothOfContacts, deviator.addTo(sums, l.invN);
 
 	const Real     sigma = deviator.equivalent(sums.square * l.invN);
 	mca::Return back { 1., 0. };
