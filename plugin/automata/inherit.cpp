@@ -123,6 +123,7 @@ void Solver::inheritState(const Solver& old)
 		if (options.volumeRule != VolumeRule::affine && S.flags[i] & linkBits && O.blocks[size_t(o) / blockSize].contact)
 			S.rest[i] += old.contactSum(size_t(o)); // its contacts come back with the search
 	}
+	sums.fracture = old.sums.fracture; // what deviators lose here has left with the erased ones, see below
 	inheritTied(old);
 	inheritContacts(old);
 	for (auto& B : S.blocks)

@@ -56,7 +56,7 @@ public:
 		    "the second. In space 0-11, (slot + 6) % 12 around the second"))
 		((Vector2r, s, Vector2r::Zero(), Attr::readonly, "J times normal deviatoric stress of each side [Pa]; in plane strain"))
 		((Vector2r, tau, Vector2r::Zero(), Attr::readonly, "J times shear stress of each side [Pa]; in plane strain"))
-		((Vector3r, traction, Vector3r::Zero(), Attr::readonly, "J times traction of the first side [Pa]; in space"))
+		((Vector3r, traction, Vector3r::Zero(), Attr::readonly, "J times traction of the first side, of links beside deviators (S4) [Pa]; in space"))
 		((Vector3r, tractionOther, Vector3r::Zero(), Attr::readonly, "the same of the second side [Pa]"))
 		((Vector2r, rest, Vector2r::Zero(), Attr::readonly, "contact: rest distance of each side [m]"))
 		((Real, d, 0, Attr::readonly, "mean diameter [m]"))

@@ -41,8 +41,10 @@ def beside(pid):
 def run(plugin, tmp_path):
 	"""A run that has written its first checkpoint: (process, the one beside it, folder)."""
 	env = dict(os.environ, OMP_NUM_THREADS='1', PYTHONPATH=str(PACKAGE))
+	# shells start what runs in the background with interrupts ignored, and so all that it starts
+	heard = lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)
 	p = subprocess.Popen(['/usr/bin/python3', '-m', 'yade_mca.tasks', *RUN, '--out', str(tmp_path)], env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-	                     text=True, start_new_session=True)
+	                     text=True, start_new_session=True, preexec_fn=heard)
 	waitFor(lambda: (tmp_path / 'penetration.checkpoint').exists() or p.poll() is not None)
 	assert p.poll() is None, p.communicate()
 	yield p, beside(p.pid), tmp_path

@@ -35,7 +35,7 @@ constexpr Flags slotBits(int k)
 }
 
 /// Whether two automata are held apart by a neighbour that both are linked to, as long as both have a volume by their links: in strong compression they come
-/// closer than a contact may be, and are parts of one body all the same. Not those that were linked themselves. neighbour(k): at the other end of a link of a
+/// closer than a contact may be, and are parts of one body all the same. Not those that were linked themselves. ofA(k), ofB(k): at the other end of a link of a
 /// or b; factorA, factorB: of their volumes.
 template <class Id, class A, class B> bool heldByNeighbour(Id a, Flags flagsA, double factorA, A&& ofA, Id b, Flags flagsB, double factorB, B&& ofB)
 {

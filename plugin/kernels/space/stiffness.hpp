@@ -9,9 +9,10 @@ inline namespace MCA_SPACE {
 /// Largest square by which the deformation of links with this sum of r (x) e_k, at rest `rest` = sum of e_k (x) e_k over spread, changes areas; at least 1 [-].
 /// In the direction of strongest compression waves are as much stiffer. Exact where two directions are alike and the third is shorter, at most a third above
 /// else.
-MCA_INLINE double largestStretch(const Tensor<double>& sum, const Symmetric<double>& rest, double perDet, double d2)
+/// factor: J = factor det F; at rest 1/determinant(rest).
+MCA_INLINE double largestStretch(const Tensor<double>& sum, const Symmetric<double>& rest, double factor, double d2)
 {
-	const Tensor<double> C = cofactor(sum) * (perDet / (Lattice::spread * Lattice::spread * d2)); // times rest: cofactor of F
+	const Tensor<double> C = cofactor(sum) * (factor / (Lattice::spread * Lattice::spread * d2)); // times rest: cofactor of F
 	const Vec<double> a = times(C, { rest.xx, rest.xy, rest.zx }), b = times(C, { rest.xy, rest.yy, rest.yz }),
 			  c = times(C, { rest.zx, rest.yz, rest.zz });
 	const Symmetric<double> B = symmetricDyad(a, a) + symmetricDyad(b, b) + symmetricDyad(c, c), off = deviatorOf(B);
@@ -25,7 +26,7 @@ affineStiffness(const VolumeConstants<law>& c, double J, const Tensor<double>& s
 {
 	const Symmetric<double> rest = directions * (1. / Lattice::spread), C = cofactor(rest);
 	const double det = rest.xx * C.xx + rest.xy * C.xy + rest.zx * C.zx, perDet = factor > 0. ? 1. / det : 0.;
-	const double slope = max((1. / 3.) * trace(C) * perDet, 1.), stretch = largestStretch(sum, rest, perDet, c.d2);
+	const double slope = max((1. / 3.) * trace(C) * perDet, 1.), stretch = largestStretch(sum, rest, factor, c.d2);
 	const double shear = max(0.5 * c.d2 / nearest2, slope * stretch);
 	return stiffness<law>(c, J, max(min(slope * slope, 4.), slope) * stretch, max(shear, 1.));
 }

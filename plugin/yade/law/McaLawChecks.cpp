@@ -114,7 +114,9 @@ void Loop::checkState(const Row& r) const
 	need("pressure", m.pressure, std::isfinite(m.pressure), "finite");
 	need("volumeRatio", m.volumeRatio, m.volumeRatio > 0 && std::isfinite(m.volumeRatio), "finite and above zero");
 	need("stressZZ", m.stressZZ, std::isfinite(m.stressZZ), "finite");
-	need("law.deviator", l.deviator.squaredNorm(), std::isfinite(l.deviator.squaredNorm()), "finite");
+	const Real size = l.deviator.norm(), round = 1e-6 * size + 1e-12 * r.material->eos.bulkModulus();
+	const bool symmetric = l.deviator == l.deviator.transpose() && std::fabs(l.deviator.trace()) <= round;
+	need("law.deviator", size, std::isfinite(size) && symmetric, "finite, symmetric and without a trace");
 	const auto result = [&](const char* name, Real value, Real was) {
 		if (l.moved > 0 && value != was)
 			refuse("body ", r.id, ": state.", name, " was set to ", value, " (it was ", was,

@@ -95,6 +95,7 @@ private:
 		Vec  distance; ///< [m]
 		Turn spin, own; ///< pairSpin(), and that of the automaton itself [-]
 	};
+	bool                       isFresh(const Row& r, const Side& s) const { return r.fresh || rows[size_t(s.other)].fresh; }
 	Moved                      moved(const Row&, const Side&) const;
 	Trial                      trial(const Row&, const Side&, Stress old, const Apart&) const;
 	Deviator                   deviatorOf(const Row&) const;

@@ -91,7 +91,7 @@ template <mca::EosKind kind> void Loop::volumeBy(Row& r, bool withContacts)
 Loop::Moved Loop::moved(const Row& r, const Side& s) const
 {
 	const Row& o  = rows[size_t(s.other)];
-	const Real on = r.fresh || o.fresh ? 0. : law.lastMove;
+	const Real on = isFresh(r, s) ? 0. : law.lastMove;
 	const auto spin = [&](const Row& other, Real arm) { return mca::pairSpin(turnOf(r.spin), turnOf(other.spin), arm, on); };
 	return { (vec(o.velocity) - vec(r.velocity)) * on, spin(o, mca::arm(r.d, o.d)), spin(r, 0.5) };
 }
@@ -99,7 +99,7 @@ Loop::Moved Loop::moved(const Row& r, const Side& s) const
 Trial Loop::trial(const Row& r, const Side& s, Stress old, const Apart& apart) const
 {
 	const Moved m = moved(r, s);
-	return trialOf(old, between(r, s), m.distance, m.spin, apart, s.p->twoG);
+	return trialOf(old, between(r, s), m.distance, m.spin, mca::dim == 3 && isFresh(r, s) ? Apart {} : apart, s.p->twoG);
 }
 
 /// Before yield.
@@ -107,7 +107,7 @@ Deviator Loop::deviatorOf(const Row& r) const
 {
 	Deviator deviator;
 	for (int k = 0; mca::dim == 3 && k < nLinks; k++)
-		if (const Side& s = r.link[k]; s.p) {
+		if (const Side& s = r.link[k]; s.p && !isFresh(r, s)) {
 			const Moved did = moved(r, s);
 			deviator.link(k, between(r, s), did.distance, did.spin, did.own, mca::linkWeight(flagsOf(*r.l), k));
 		}

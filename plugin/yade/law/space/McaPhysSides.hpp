@@ -55,15 +55,16 @@ class Deviator {
 	mca::DeformationSums<Real> sums;
 	mca::Symmetric<Real>       strain {}, old {};
 	mca::DeviatorAdvance<Real> step {};
-	bool                       spans = false;
 
 public:
 	/// What a link does in a step.
 	void link(int k, Vec r, Vec moved, Turn spin, Turn own, Real weight) { sums.add(k, moved, mca::pairMotion(r, moved, spin), spin - own, weight); }
 	void advance(const McaState&, const McaLawState& l, Real G, Real dilation)
 	{
-		spans = l.factor > 0, old = symmetricOf(l.deviator);
-		mca::Deformation<Real> own { apartOf(mca::pairDilation(dilation, Real(0), mca::ofOwn)), {} };
+		old = symmetricOf(l.deviator);
+		mca::Deformation<Real> own { apartOf(l.factor > 0 ? 0. : mca::pairDilation(dilation, Real(0), mca::ofOwn)), {} };
+		// links that have moved span a volume: not where neighbours are new
+		const bool spans = l.factor > 0 && determinant(sums.middle) * mca::Lattice::perVolume(l.diameter) * l.factor > 1e-9;
 		if (spans) own = mca::deformation(sums, mca::Lattice::cell(l.diameter) / (mca::Lattice::spread * l.cell));
 		strain = own.strain, step = mca::advance(old, own, 2. * G);
 	}
