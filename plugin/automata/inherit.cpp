@@ -70,19 +70,25 @@ void Solver::inheritTied(const Solver& old)
 	tiedVelocity = old.tiedVelocity, tiedSpin = old.tiedSpin;
 }
 
-/// Old contacts bring their stresses along through the search.
+/// Old contacts bring their stresses along through the search; what the volumes of their owners hold stays in the account until then.
 void Solver::inheritContacts(const Solver& old)
 {
 	const Store& O = old.store;
+	Store&       S = store;
 	for (size_t r = 0; r < old.contacts.rows(); r++) {
 		const int32_t id = O.id[old.contacts.rowOwner[r]];
 		const int64_t i  = indexIn(old, id) < 0 ? -1 : indexOf(id);
 		if (i < 0) continue;
 		const size_t first = contacts.size();
+		double       gone  = 0; // terms of those that are erased
 		for (int32_t c = old.contacts.rowBegin[r]; c < old.contacts.rowBegin[r + 1]; c++) {
 			const int32_t mate = O.id[old.contacts.other[c]];
 			const int64_t j    = indexIn(old, mate) < 0 ? -1 : indexOf(mate);
-			if (j < 0) continue;
+			if (j < 0) {
+				const double r2 = O.distance2(old.contacts.owner[c], old.contacts.other[c]), rest = old.contacts.rest[c];
+				if (pushes(r2, rest, old.contacts.d[c]) > 0.) gone += volumeTerm<ofContacts(VolumeRule::affine)>(rest, r2);
+				continue;
+			}
 			contacts.owner.push_back(int32_t(i)), contacts.other.push_back(int32_t(j));
 			pushSide(contacts, sideOf(old.contacts, c));
 			contacts.rest.push_back(old.contacts.rest[c]), contacts.twoG.push_back(old.contacts.twoG[c]);
@@ -90,6 +96,8 @@ void Solver::inheritContacts(const Solver& old)
 		if (contacts.size() == first) continue;
 		if (contacts.rowBegin.empty()) contacts.rowBegin.push_back(0);
 		contacts.rowOwner.push_back(int32_t(i)), contacts.rowBegin.push_back(int32_t(contacts.size()));
+		if (scratch.sum.empty()) scratch.resize(S.size(), options.account);
+		S.blocks[size_t(i) / blockSize].contact = true, scratch.sum[i] = std::max(0., old.contactSum(size_t(indexIn(old, id))) - gone);
 	}
 }
 

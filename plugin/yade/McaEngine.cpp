@@ -168,6 +168,7 @@ void McaEngine::integrate(Scene* scene)
 	solver->integrate(scene->dt);
 	forcesReady = false;
 	stale       = true;
+	lastMoved   = scene->iter;
 }
 
 void McaEngine::step()

@@ -90,7 +90,7 @@ public:
 		    "every step"))
 		((Real, gravityZ, 0, , "acceleration of all automata along z [m/s2]; in space only. Read in every step"))
 		((int, dimension, 2, Attr::readonly, "2: plane strain, 3: space; found when bodies are gathered"))
-		((long, lastWritten, -1, Attr::readonly|Attr::noSave, "step of the last write to the bodies"))
+		((long, lastWritten, -1, Attr::readonly|Attr::noSave, "step whose end the bodies hold since they were written last; -1: before the first"))
 		((bool, forcesReady, false, Attr::hidden, "forces of this step are computed; integration has yet to follow"))
 		((bool, bodiesSaved, false, Attr::hidden, "the bodies saved with it hold what it holds, so that differences are a script's"))
 		((sdk::Blob, state, , Attr::hidden, "state of the solver"))
@@ -158,6 +158,8 @@ private:
 	bool looked = true;  ///< a script may have changed something since the last step
 	int  lost   = -1;    ///< body whose change by a script was lost; told by the next step
 	bool stale  = false; ///< the bodies do not hold the present state
+	bool wrote  = false; ///< they hold what this engine has written, not only what a script or a file gave
+	long lastMoved = -1; ///< step that moved the automata last
 	bool         warnedEmpty = false, warnedTension = false;
 	mutable bool warnedGravity = false;
 	int  energyIndex[12] = { -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1 };

@@ -70,7 +70,7 @@ void McaEngine::settleIn(Scene* scene)
 		solver.reset();
 		bodies.clear(), same.clear(), known.clear(), order.clear();
 		lost  = -1;
-		stale = forcesReady = false, looked = true, warnedEmpty = warnedTension = false, lastWritten = -1;
+		stale = forcesReady = false, looked = true, warnedEmpty = warnedTension = wrote = false, lastWritten = -1;
 		std::fill(std::begin(energyIndex), std::end(energyIndex), -1);
 	} else bind(scene);
 	home = present;

@@ -281,7 +281,8 @@ void McaEngine::writeBodies(Scene* scene)
 	}
 	stale       = false;
 	looked      = true;
-	lastWritten = scene->iter;
+	wrote       = true;
+	lastWritten = lastMoved == scene->iter ? scene->iter : scene->iter - 1; // between two steps, the next one is counted already
 	if (lowest < -0.25 && !warnedTension) {
 		warnedTension = true;
 		LOG_WARN(
@@ -300,7 +301,7 @@ void McaEngine::bringUpToDate()
 {
 	locked([&] {
 		const auto scene = home.lock();
-		if (!solver || !stale || !scene || (solver->counters().steps == 0 && lastWritten < 0)) return;
+		if (!solver || !stale || !scene || (solver->counters().steps == 0 && !wrote)) return;
 		writeBodies(scene.get());
 	});
 }

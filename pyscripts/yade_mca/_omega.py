@@ -27,8 +27,12 @@ class Loop:
 
 	@staticmethod
 	def alive():
+		"""All tasks. A listing ends early where a task dies while it is made (the loop before): it has to have as many as the folder counts."""
 		try:
-			return set(os.listdir(TASKS))
+			for _ in range(100):
+				names = os.listdir(TASKS)
+				if len(names) == os.stat(TASKS).st_nlink - 2: break
+			return set(names)
 		except OSError:  # no /proc: as stock YADE
 			return set()
 
@@ -50,7 +54,7 @@ class Loop:
 		"""Waits until it is gone; others may go on meanwhile."""
 		last = time.monotonic() + PATIENCE
 		while self.threads and not self.isThis() and time.monotonic() < last:
-			self.threads &= self.alive()
+			self.threads = {t for t in self.threads if os.path.exists(f'{TASKS}/{t}')}
 			if self.threads: time.sleep(1e-4)
 
 

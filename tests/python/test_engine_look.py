@@ -64,6 +64,19 @@ def test_nobodyLooksNothingIsWritten(plugin):
 	assert (seen + 1) % 5 == 0 and e.lastWritten == O.iter - 1
 
 
+def test_whatIsWrittenBetweenTwoStepsIsTheEndOfTheLast(plugin):
+	"""The next one is counted by then."""
+	from yade import O
+	ids = scene.block(6, 6, velocity=(5., 1.))
+	e = scene.engine(1e-8)
+	O.run(7, True)
+	O.bodies[int(ids[0])].state.vel[0] += 1.
+	e.sync()
+	assert e.lastWritten == 6
+	O.run(3, True)
+	assert e.lastWritten == 9
+
+
 def test_singleStepsShowOnTheBodies(plugin):
 	"""O.step() is a run of one step: whoever looks afterwards sees it."""
 	from yade import O
