@@ -58,6 +58,7 @@ def test_planCoversEveryCaseWithNamesOfItsOwn():
         ('penetration', 'coupled', 5, dict(until=5.)),
         ('law', 'McaEngine', 400, dict(short=True)),
         ('law', 'CpmMat', 400, dict(short=True)),
+        ('space', 'McaEngine', 500, dict(short=True, kind='johnsonCook')),
 ])
 def test_recordOfATinyRun(plugin, case, solver, n, options):
 	r = process.execute(plan.job(case, solver, n, **options))
@@ -114,6 +115,7 @@ def example():
 	        made('penetration', 'automata', 10, .2, result=dict(lengthLoss=.3, velocityLossAll=.1, velocityLossTail=.04))]
 	records += [made('law', 'McaEngine', 100, .01, automataNs=50.), made('law', 'McaEngine', 100, .005, automataNs=25., threads=2), made('law', 'CpmMat', 100, .2, automataNs=1000.),
 	            made('law', 'Law2', 100, .2, automataNs=1000., kind='elastic')]
+	records += [dict(made('space', 'McaEngine', 10000, .02 / threads, automataNs=150. / threads, threads=threads), bytes=3000.) for threads in (1, 2)]
 	return results.giveErrors(records)
 
 
@@ -129,7 +131,7 @@ def test_ratios():
 	(row, ) = results.equalError(records)
 	assert row[:2] == (120, 24) and row[5] == pytest.approx(4.) and row[6]  # the same error in a quarter of the time
 	assert results.widths(records)[0][:5] == (120, 10, .1, .2, 2.)
-	assert results.speedUps(records) == [('law/McaEngine/N100', pytest.approx(2.), 1.)]
+	assert results.speedUps(records) == [(name, pytest.approx(2.), 1.) for name in ('law/McaEngine/N100', 'space/McaEngine/N10000')]
 	assert {r[3]: r[5] for r in results.peers(records) if r[2] == 1} == {'McaEngine': 1., 'CpmMat': 20., 'Law2': None}
 	report = Report('t')
 	results.add(report, records)
@@ -138,6 +140,9 @@ def test_ratios():
 	for c in report.cases:  # an aim that is not asserted is not printed as a reference
 		assert c.limit is not None or (c.reference is None and not c.asserted), c.name
 	assert cases['law/N100/plastic/1threads/McaEngine'].value == records[[r['name'] for r in records].index('law/McaEngine/N100')]['automataNs']
+	slow = Report('t')
+	results.add(slow, [dict(r, automataNs=170., timers=.02) if r['case'] == 'space' else r for r in records])
+	assert [c.name for c in slow.failed] == ['space/McaEngine/N10000', 'space/McaEngine/N10000/2threads']  # 160 ns, 1.8 times
 	slow = Report('t')
 	results.add(slow, [dict(r, automataNs=500.) if r['solver'] == 'CpmMat' else r for r in records])
 	assert [c.name for c in slow.failed] == ['law/N100/plastic/1threads/CpmMatOverMcaEngine']
@@ -155,8 +160,8 @@ def test_picturesAndTables(tmp_path):
 	(tmp_path / 'bench.json').write_text(json.dumps(dict(records=records, kernels=dict(bench_grid=[dict(name='step<Feature::plastic>/64/1', time=1., ns_per_cell=17.)]))))
 	assert cli.main(['bench', '--doc', str(tmp_path)]) == 0
 	text = {p.stem: p.read_text() for p in tmp_path.glob('*.inc')}
-	assert len(text) == 7 and all('.. list-table::' in t for t in text.values())
-	assert '- 20.0' in text['bench-law'] and 'ns_per_cell 17' in text['bench-kernels'] and 'inversePower' in text['bench-options'] and '- 4.0' in text['bench-equal']
+	assert len(text) == 8 and all('.. list-table::' in t for t in text.values())
+	assert '- 150' in text['bench-space'] and '- 20.0' in text['bench-law'] and 'ns_per_cell 17' in text['bench-kernels'] and 'inversePower' in text['bench-options'] and '- 4.0' in text['bench-equal']
 
 
 def test_aFolderKeepsTheCasesThatAreNotRunAgain(tmp_path, monkeypatch):
@@ -186,11 +191,12 @@ def test_theFasterOfTwoRunsWithTheSameLibraries():
 
 
 def test_programsThatAreNotBuiltAreSaidSo(tmp_path):
-	assert google.run(True, tmp_path) == ({}, ['bench_grid is not built (build target bench_grid)', 'bench_automata is not built (build target bench_automata)'])
+	assert google.run(True, tmp_path) == ({}, ['bench_grid is not built (build target bench_grid)', 'bench_automata is not built (build target bench_automata)',
+	                                                'bench_space is not built (build target bench_space)'])
 	(tmp_path / 'bench_grid').write_text('#!/bin/sh\necho \'{"benchmarks": [{"name": "a", "time_unit": "us", "real_time": 2.0, "run_type": "iteration", "ns_per_cell": 3.0}]}\'\n')
 	(tmp_path / 'bench_grid').chmod(0o755)
 	found, remarks = google.run(False, tmp_path)
-	assert found == dict(bench_grid=[dict(name='a', time=2000., ns_per_cell=3.)]) and len(remarks) == 1
+	assert found == dict(bench_grid=[dict(name='a', time=2000., ns_per_cell=3.)]) and len(remarks) == 2
 	row, report = dict(name='step<Feature::johnsonCook>/256/1/min_time:0.200/real_time', time=1.), Report('t')
 	google.add(report, dict(bench_grid=[dict(row, ns_per_cell=24.), dict(row, ns_per_cell=26.), dict(name='step<Feature::plastic>/256/1', time=1., ns_per_cell=99.)]))
 	assert [c.passed for c in report.cases] == [True, False, True] and [c.limit for c in report.cases] == [25., 25., None]

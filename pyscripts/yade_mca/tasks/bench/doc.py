@@ -7,10 +7,10 @@ import re
 from ..penetration.doc import listTable, number
 from ..report import writeAtomically
 from . import results
-from .plan import ERRORS, RESOLUTION, variants
+from .plan import ERRORS, LAWS, RESOLUTION, variants
 from .plots import PHASES, TITLES, shown
 
-KINDS = {'elastic': 'elastic', 'plastic': 'plastic', 'fracture': 'plastic, links break', 'random': 'plastic, bodies in random order'}
+KINDS = {'elastic': 'elastic', 'johnsonCook': 'Johnson-Cook', 'plastic': 'plastic', 'fracture': 'plastic, links break', 'random': 'plastic, bodies in random order'}
 
 
 def madeBy(records):
@@ -35,6 +35,15 @@ def law(records):
 		              number(one and one[1], 1), number(two and two[1], 1)))
 	head = ('law', 'material', 'automata', 'ns, 1 thread', 'ns, 2 threads', '1 over 2 threads', 'over McaEngine, 1 thread', '2 threads')
 	return listTable('Nanoseconds per automaton and step', head, lines) + targets(records) + madeBy([r for r in records if r['case'] == 'law'])
+
+
+def space(records):
+	"""Cost in space by material, size and threads."""
+	ratios, of = {name: ratio for name, ratio, _ in results.speedUps(records)}, [r for r in records if r['case'] == 'space' and r.get('automataNs')]
+	lines = [(KINDS[r['kind']], '%d' % r['n'], number(r['automataNs'], 0), number(ratios.get(r['name']), 2), number(r['bytes'], 0)) for r in of if r['threads'] == 1]
+	t = results.SPACE
+	aim = '\nAim, plastic: at most %s ns; two threads at least %g times as fast.\n' % (', '.join('%g at %d' % (v, k) for k, v in t['nanoseconds'].items()), t['threads'])
+	return listTable('In space', ('material', 'automata', 'ns, 1 thread', '1 over 2 threads', 'bytes with its body'), lines) + aim + madeBy(of) if lines else 'Not measured for these results.\n'
 
 
 def targets(records):
@@ -65,11 +74,11 @@ def fronts(records, before=()):
 
 def options(records):
 	"""Each option against the default run of the same case, solver and resolution."""
-	base = {(r['case'], r['solver'], r['n'], r.get('width')): r for r in records if not variants(r) and r['case'] != 'law'}
+	base = {(r['case'], r['solver'], r['n'], r.get('width')): r for r in records if not variants(r) and r['case'] not in LAWS}
 	rows = []
 	for r in records:
 		b = base.get((r['case'], r['solver'], r['n'], r.get('width')))
-		if r['case'] == 'law' or not variants(r) or not b: continue
+		if r['case'] in LAWS or not variants(r) or not b: continue
 		clock = 'stepping' if r['threads'] == 1 else 'timers'
 		if r.get('ended'): rows.append((TITLES[r['case']], r['solver'], '%d' % r['n'], ', '.join(variants(r)), '', '', 'ended: ' + r['ended'].split('Remedy')[0][:100].replace('*', '').replace('`', '')))
 		else: rows.append((TITLES[r['case']], r['solver'], '%d' % r['n'], ', '.join(variants(r)), number(r[clock] / b[clock], 2), '%.2g / %.2g' % (r['error'], b['error']) if r.get('error') and b.get('error') else '', ''))
@@ -108,7 +117,7 @@ def kernels(data):
 
 
 def what():
-	rows = [(TITLES.get(c, 'law'), RESOLUTION[c], ERRORS.get(c, '')) for c in RESOLUTION]
+	rows = [(TITLES.get(c, c), RESOLUTION[c], ERRORS.get(c, '')) for c in RESOLUTION]
 	return listTable('Cases', ('case', 'N counts', 'error'), rows)
 
 
@@ -117,7 +126,7 @@ def write(folder):
 	with open(os.path.join(folder, 'bench.json')) as f:
 		data = json.load(f)
 	records, made = data['records'], []
-	tables = dict(cases=lambda r: what(), law=law, front=lambda r: fronts(r, data.get('before', ())), options=options, phases=phases, equal=equal, kernels=lambda r: kernels(data))
+	tables = dict(cases=lambda r: what(), law=law, space=space, front=lambda r: fronts(r, data.get('before', ())), options=options, phases=phases, equal=equal, kernels=lambda r: kernels(data))
 	for name, make in tables.items():
 		made.append('bench-%s.inc' % name)
 		writeAtomically(os.path.join(folder, made[-1]), make(records))

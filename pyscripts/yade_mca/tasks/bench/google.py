@@ -9,8 +9,8 @@ from pathlib import Path
 from .. import environment
 
 #: program -> (filter of a quick run, or None for all)
-PROGRAMS = {'bench_grid': 'step.*plastic.*/(64|256)/1/', 'bench_automata': '.*/(32|128)/1(/|$)|kernel'}
-FULL = {'bench_grid': '.', 'bench_automata': '.'}
+PROGRAMS = {'bench_grid': 'step.*plastic.*/(64|256)/1/', 'bench_automata': '.*/(32|128)/1(/|$)|kernel', 'bench_space': '.*/14/1(/|$)'}
+FULL = {'bench_grid': '.', 'bench_automata': '.', 'bench_space': '.'}
 LIMIT = 600  #: longest time of one program [s]
 TARGETS = {r'Feature::johnsonCook>/\d+/1/': 25.}  #: pattern of a name -> ns per cell and step (at most)
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Case `law` of `bench`: cost of one automaton and step by McaEngine, by the same law in YADE's own loop and by YADE's own bonded laws, on one packing.
+"""Cases `law` and `space` of `bench`: cost of one automaton and step by McaEngine, by the same law in YADE's own loop and by YADE's own bonded laws, on one packing.
 
 Hexagonal packing, all bonds made; the velocity is a shear flow with waves of 20 mm and random motion on top, so that all material is strained and yields where it can.
 kind      elastic; plastic (linear hardening); fracture (the same, and links break); random: plastic, bodies in random order
+space: the same by McaEngine alone in a cube of the face-centred cubic packing, in a shear flow of three dimensions; kind johnsonCook, too.
 YADE's laws have no plasticity of this kind: CpmMat is elastic with damage, CohFrictMat elastic with bonds that can break; both run as they are.
 """
 import math
@@ -14,7 +15,7 @@ import numpy as np
 from ... import _yade, materials, packings
 from ..._yade import yadeClass
 from ...scenes import law2Engines
-from .meter import Meter, withoutOthers
+from .meter import Meter, residentMemory, withoutOthers
 
 D, DT = 1e-3, 1e-8  #: spacing [m]; time step [s], a tenth of the limit
 WAVE, SHEAR, NOISE = 20e-3, 5e3, 5.  #: length [m] and rate [1/s] of the shear flow, random speed [m/s]
@@ -75,30 +76,40 @@ def windows(count):
 	return WINDOWS // (2 if count > 5e5 else 1)
 
 
+def cube(count):
+	half = 0.5 * (count / math.sqrt(2))**(1 / 3) * D
+	return packings.fcc(D, packings.Box((-half, ) * 3, (half, ) * 3))
+
+
 def packing(count):
 	side = math.sqrt(count * 0.5 * math.sqrt(3)) * D
 	return packings.hexagonal(D, packings.Rectangle((0, 0), (side, side)))
 
 
 def velocities(positions):
-	"""Shear flow and noise, (N, 2) [m/s]."""
+	"""Shear flow and noise, (N, 2) or (N, 3) [m/s]."""
 	k = 2 * math.pi / WAVE
-	flow = SHEAR / k * np.stack((np.sin(k * positions[:, 1]), np.sin(k * positions[:, 0])), axis=1)
+	flow = SHEAR / k * np.sin(k * np.roll(positions, -1, axis=1))
 	return flow + np.random.default_rng(1).uniform(-NOISE, NOISE, positions.shape)
 
 
-def scene(road, count, kind):
+def strengthOf(kind, count):
+	"""Constants of the material of a kind."""
+	if kind == 'elastic': return dict(yieldModel='elastic')
+	if kind == 'johnsonCook': return {}
+	return dict(yieldModel='linearHardening', yieldStress=0.1e9, hardeningModulus=0.5e9, **(dict(fractureStrain=0.02 * windows(count) / WINDOWS, strengthSpread=0.1) if kind == 'fracture' else {}))
+
+
+def scene(road, count, kind, space=False):
 	"""Fills O; returns McaEngine or None."""
-	O, p = _yade.scene(), packing(count)
+	O, p = _yade.scene(), (cube if space else packing)(count)
 	if kind == 'random': p = p.select(np.random.default_rng(2).permutation(len(p)))
 	v = velocities(p.positions)
 	O.dt = DT
 	if road in PEERS:
 		bonded(road, p.positions, v)
 		return None
-	strength = dict(yieldModel='elastic') if kind == 'elastic' else dict(yieldModel='linearHardening', yieldStress=0.1e9, hardeningModulus=0.5e9)
-	if kind == 'fracture': strength.update(fractureStrain=0.02 * windows(count) / WINDOWS, strengthSpread=0.1)  # a few reach it
-	packings.addBodies(p, materials.mcaMat('4340', **strength), velocity=v)
+	packings.addBodies(p, materials.mcaMat('4340', **strengthOf(kind, count)), velocity=v)  # of those that break, few do
 	if road == 'Law2':
 		O.engines = law2Engines()
 		return None
@@ -109,8 +120,8 @@ def scene(road, count, kind):
 
 def law(job):
 	"""The best of the later windows of one run, without the write-back at its end; `flowing`: share of the automata whose plastic strain has grown in it, `broken`: broken links per automaton."""
-	road, begin = job['solver'], time.perf_counter()
-	O, engine = _yade.scene(), scene(road, job['n'], job['kind'])
+	road, begin, memory = job['solver'], time.perf_counter(), residentMemory()
+	O, engine = _yade.scene(), scene(road, job['n'], job['kind'], job['case'] == 'space')
 	meter, built, seen = Meter(engine), time.perf_counter() - begin, []
 	meter.steps(WARM if engine else WARM // 3)  # all bonds are made, first yield
 	before = engine.field('plasticStrain') if engine else None
@@ -122,6 +133,7 @@ def law(job):
 	best = min(found[len(found) // 2:], key=lambda r: r['automataNs'])
 	bonds = len(engine.links()) if engine else O.interactions.countReal()
 	r = dict(best, automata=count, cells=0, cellNs=None, simulated=O.time, built=built, bonds=bonds / count, windowsNs=[f['automataNs'] for f in found], triad=yadeClass('McaInfo')().triad(1), error=None, energyError=None)
+	r['bytes'] = (residentMemory() - memory) / count
 	if engine:
 		c = engine.counters()
 		r.update(flowing=float((engine.field('plasticStrain') > before).mean()), broken=c['brokenLinks'] / count, contacts=c['contacts'] / count)
@@ -140,4 +152,4 @@ def part(a, b, count):
 	            phases={k: v / count for k, v in spent.items()})
 
 
-CASES = dict(law=law)
+CASES = dict(law=law, space=law)

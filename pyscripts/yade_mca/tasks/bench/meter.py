@@ -130,6 +130,12 @@ def machine():
 	            version=environment.version(), load=os.getloadavg()[0])
 
 
+def residentMemory():
+	"""Resident memory of this process now [bytes]."""
+	with open('/proc/self/statm') as f:
+		return int(f.read().split()[1]) * resource.getpagesize()
+
+
 def peakMemory():
 	"""Largest resident memory of this process so far [MB]."""
 	return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024

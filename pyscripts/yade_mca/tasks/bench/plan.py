@@ -2,7 +2,8 @@
 """Which runs `bench` makes: a job is a dict that names the case, the solver, the resolution n and the options; one process per job."""
 
 #: case -> share of the largest stable time step where nothing else is said
-FACTORS = dict(elasticWave=0.4, plasticShock=0.4, taylorBar=0.4, plateWave=0.4, penetration=0.3, law=0.1)
+FACTORS = dict(elasticWave=0.4, plasticShock=0.4, taylorBar=0.4, plateWave=0.4, penetration=0.3, law=0.1, space=0.1)
+LAWS = ('law', 'space')  #: cost of a step alone
 GRID_FACTOR = 0.6
 UNTIL = 42.  #: end of penetration [us]
 RULES = ('inversePower', 'meanDistance')
@@ -10,7 +11,7 @@ WIDTHS = (120, 200, 400)  #: of plates [mm]
 CASES = tuple(FACTORS)
 #: what n counts
 RESOLUTION = dict(elasticWave='spacings in the width of the pulse', plasticShock='automata or cells along the bar', taylorBar='automata across the bar', plateWave='automata over the thickness',
-                  penetration='automata over the thickness', law='automata')
+                  penetration='automata over the thickness', law='automata', space='automata')
 #: case -> until when or what the error is
 ERRORS = dict(elasticWave='L2 error of the velocities against the exact solution', plasticShock='L1 error of the velocities against the exact solution', taylorBar='length and foot against the finest run',
               plateWave='L2 error of velocities at three points against the finest run', penetration='losses of the rod against the finest run')
@@ -21,7 +22,7 @@ def job(case, solver, n, **options):
 	j = dict(case=case, solver=solver, n=n, rule='affine', factor=GRID_FACTOR if solver == 'grid' else FACTORS[case], sleeping=True, account=case == 'penetration', threads=1, mayEnd=False)
 	if case == 'plateWave': j['width'] = 120
 	if case == 'penetration': j.update(width=120, until=UNTIL)
-	if case == 'law': j.update(kind='plastic', sleeping=False, account=False)
+	if case in LAWS: j.update(kind='plastic', sleeping=False, account=False)
 	if not set(options) <= {*j, 'short'}:
 		raise ValueError('unknown options %s' % sorted(set(options) - set(j)))
 	j.update(options)
@@ -33,7 +34,7 @@ def variants(j):
 	words = [j['kind']] if j.get('kind', 'plastic') != 'plastic' else []
 	if j['rule'] != 'affine': words.append(j['rule'])
 	if j['factor'] != (GRID_FACTOR if j['solver'] == 'grid' else FACTORS[j['case']]): words.append('dt%g' % j['factor'])
-	if not j['sleeping'] and j['case'] != 'law': words.append('awake')
+	if not j['sleeping'] and j['case'] not in LAWS: words.append('awake')
 	if j['account'] != (j['case'] == 'penetration'): words.append('account' if j['account'] else 'noAccount')
 	if j['threads'] != 1: words.append('%dthreads' % j['threads'])
 	return words
@@ -65,7 +66,8 @@ def quick():
 	jobs += series('penetration', 'coupled', (12, 25), until=20.) + series('penetration', 'automata', (12, 25), until=20.) + [job('penetration', 'coupled', 25, until=20., threads=2)]
 	jobs += [job('penetration', 'coupled', 12, until=20., sleeping=False), job('penetration', 'coupled', 12, until=20., rule='inversePower')]
 	roads = [job('law', 'McaEngine', 10000)] + [job('law', r, 10000, short=True) for r in ('Law2', 'CpmMat', 'CohFrictMat')]
-	return jobs + roads + [job('law', 'McaEngine', 10000, **o) for o in (dict(threads=2), dict(kind='elastic'), dict(kind='fracture'), dict(kind='random'))]
+	return jobs + roads + [job('law', 'McaEngine', 10000, **o) for o in (dict(threads=2), dict(kind='elastic'), dict(kind='fracture'), dict(kind='random'))] + [
+	        job('space', 'McaEngine', 10000, threads=t) for t in (1, 2)]
 
 
 def waves():
@@ -91,6 +93,10 @@ def bodies():
 	return jobs + [job('penetration', s, n, width=w) for w in WIDTHS[1:] for s in ('automata', 'coupled') for n in (25, 50)]
 
 
+def spaces():
+	return [job('space', 'McaEngine', n, kind=kind, threads=t) for n in (10000, 100000) for kind in ('plastic', 'elastic', 'johnsonCook') for t in (1, 2)]
+
+
 def laws():
 	jobs = []
 	for n in (10000, 100000):
@@ -102,5 +108,5 @@ def laws():
 
 def plan(isQuick, only=None, cores=2):
 	"""The jobs in order; only: names of cases or None; jobs with more threads than processors are left out."""
-	jobs = quick() if isQuick else waves() + bodies() + laws()
+	jobs = quick() if isQuick else waves() + bodies() + laws() + spaces()
 	return [j for j in jobs if (not only or j['case'] in only) and j['threads'] <= cores]

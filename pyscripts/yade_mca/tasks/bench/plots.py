@@ -2,7 +2,7 @@
 """Pictures of `bench` from its records: time against error, cost against size, cost by phase."""
 
 from ... import plots
-from .plan import variants
+from .plan import LAWS, variants
 
 COLOURS = {'automata': 'C0', 'grid': 'C1', 'coupled': 'C2', 'Law2': 'C3', 'CpmMat': 'C4', 'CohFrictMat': 'C5', 'McaEngine': 'C0'}
 TITLES = dict(elasticWave='elastic wave', plasticShock='plastic shock', taylorBar='Taylor bar', plateWave='plate with a wave', penetration='penetration, 25 mm')
@@ -76,7 +76,7 @@ def shown(records):
 	"""Records of the bars: the finest default run of each case and solver, and all default runs of penetration at 120 mm."""
 	found = {}
 	for r in records:
-		if r.get('phasesPerStep') and not variants(r) and r['case'] != 'law' and r.get('width', 120) == 120 and r['solver'] not in ('Law2', 'CpmMat', 'CohFrictMat'):
+		if r.get('phasesPerStep') and not variants(r) and r['case'] not in LAWS and r.get('width', 120) == 120 and r['solver'] not in ('Law2', 'CpmMat', 'CohFrictMat'):
 			key = (r['case'], r['solver'], r['n'] if r['case'] == 'penetration' else 0)
 			if key not in found or found[key]['n'] < r['n']: found[key] = r
 	return list(found.values())

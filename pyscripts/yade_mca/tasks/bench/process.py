@@ -11,9 +11,9 @@ import sys
 import time
 
 from ..attempts import inMemory
-from .plan import name
+from .plan import LAWS, name
 
-MODULES = dict(elasticWave='waves', plasticShock='waves', taylorBar='bodies', plateWave='bodies', penetration='bodies', law='law')
+MODULES = dict(elasticWave='waves', plasticShock='waves', taylorBar='bodies', plateWave='bodies', penetration='bodies', law='law', space='law')
 LIMIT = 1800  #: longest time of a process [s]
 SHORT, REPEATS, LONG = 0.6, 3, 8.  #: a run is repeated until its steps have taken this long [s], so many times at most; one that takes longer than LONG [s] only once
 
@@ -40,7 +40,7 @@ def execute(job):
 	except RuntimeError as e:  # what engines raise
 		return dict(record, ended=' '.join(str(e).split()), memory=meter.peakMemory())
 	record.update(wall=since(), memory=meter.peakMemory())
-	if job['case'] != 'law':
+	if job['case'] not in LAWS:
 		while len(found) < REPEATS and sum(f['stepping'] for f in found) < SHORT:
 			found.append(made())
 		best = min(found, key=lambda f: f['stepping'])

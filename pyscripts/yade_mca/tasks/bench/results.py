@@ -11,6 +11,8 @@ from .plan import ERRORS, variants
 TARGETS = dict(peer=12., threads=1.7, nanoseconds={10000: 45., 100000: 70., 1000000: 70.})
 IDLE = 1.3  #: load of the machine up to which two threads have two processors
 COMPONENTS = dict(taylorBar=('length', 'foot'), penetration=('lengthLoss', 'velocityLossAll'))
+#: the same in space
+SPACE = dict(threads=1.8, nanoseconds={10000: 160., 100000: 320.})
 REFERENCE = dict(taylorBar='automata', plateWave='automata', penetration='coupled')  #: solver of the finest run
 
 
@@ -97,6 +99,19 @@ def peers(records):
 	return [(r['n'], r['kind'], r['threads'], r['solver'], r['automataNs'], r['automataNs'] / ns[k] if (k := (r['n'], r['kind'], r['threads'])) in ns else None, r['load']) for r in law]
 
 
+def addSpace(report, records):
+	"""Costs in space: plastic ones have the limits of SPACE on an idle machine."""
+	for r in records:
+		if r['case'] != 'space' or not r.get('automataNs'): continue
+		limit = SPACE['nanoseconds'].get(r['n']) if r['kind'] == 'plastic' and r['threads'] == 1 and r['load'] <= IDLE else None
+		report.add(r['name'], r['automataNs'], limit=limit, unit='ns per automaton and step, load %.1f' % r['load'], passed=r['automataNs'] <= limit if limit else None)
+		report.add(r['name'] + '/bytes', r['bytes'], unit='bytes per automaton, its body among them')
+	for name, ratio, load in speedUps(records):
+		if not name.startswith('space/'): continue
+		held = load <= IDLE
+		report.add(name + '/2threads', ratio, limit=SPACE['threads'] if held else None, unit='times as fast as 1 thread, load %.1f' % load, passed=ratio >= SPACE['threads'] if held else None)
+
+
 def add(report, records):
 	"""The cases of the report: errors and times of all runs, and the ratios; those of TARGETS have limits, on an idle machine of the kind they were set for; all else is measured and not judged."""
 	for r in records:
@@ -113,7 +128,9 @@ def add(report, records):
 		if ratio and road != 'McaEngine':
 			held = road == 'CpmMat' and threads == 1
 			report.add(label + road + 'OverMcaEngine', ratio, limit=TARGETS['peer'] if held else None, unit='times', passed=ratio >= TARGETS['peer'] if held else None)
+	addSpace(report, records)
 	for name, ratio, load in speedUps(records):
+		if name.startswith('space/'): continue
 		held = (name.startswith('law/McaEngine') or re.match(r'penetration/.*N(50|100)\b', name)) and load <= IDLE
 		report.add(name + '/2threads', ratio, limit=TARGETS['threads'] if held else None, unit='times as fast as 1 thread, load %.1f' % load, passed=ratio >= TARGETS['threads'] if held else None)
 	for width, n, error, coupled, alone, ratio, inside in equalError(records):

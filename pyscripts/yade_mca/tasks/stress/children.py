@@ -9,10 +9,10 @@ import time
 from dataclasses import asdict
 
 from ..attempts import inMemory
-from . import impact, lattice, limit, long, material, random, step
+from . import impact, lattice, limit, long, material, random, space, step
 from .judge import FAILED, Outcome, judge
 
-GROUPS = (step, limit, impact, material, lattice, long, random)
+GROUPS = (step, limit, impact, material, lattice, long, random, space)
 PATIENCE = 3600.  #: longest time of one case [s]
 
 
@@ -24,7 +24,7 @@ def allCases(quick, seed):
 def afterError():
 	"""What is left of the scene after a refusal: are all numbers finite, and can it be saved? None without engines."""
 	from ..._yade import scene
-	from .watch import FIELDS, VIEWS
+	from .watch import VIEWS, fieldsOf
 	import numpy as np
 	o = scene()
 	if not o.engines:
@@ -33,7 +33,7 @@ def afterError():
 	for e in o.engines:
 		try:
 			if type(e).__name__ == 'McaEngine':
-				found['finite'] = found['finite'] and all(np.isfinite(e.field(k)).all() for k in FIELDS)
+				found['finite'] = found['finite'] and all(np.isfinite(e.field(k)).all() for k in fieldsOf(e))
 			if type(e).__name__ == 'McaGridEngine':
 				found['finite'] = found['finite'] and all(np.isfinite(e.view(b, k)).all() for b in range(len(e.blocks)) for k in VIEWS[:4])
 		except RuntimeError:

@@ -27,6 +27,12 @@ GROUPS = {
         'drift': 'free vibration over many steps',
         'evenOdd': 'shortest waves behind a shock',
         'random': 'random scenes',
+        'space/step': 'in space: time step, 0.05 to 0.999 of the limit; 1.001 to infinite, zero, not a number',
+        'space/limit': 'in space: limit of stability itself, from the eigenvalues of the forces',
+        'space/impact': 'in space: two bodies, 10 m/s to 6 km/s',
+        'space/material': "in space: Poisson's ratio, yield stress, slope of the shock adiabat at their ends",
+        'space/drift': 'in space: free vibration over many steps',
+        'space/random': 'in space: random scenes',
 }
 
 

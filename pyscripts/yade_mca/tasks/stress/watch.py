@@ -12,8 +12,14 @@ from .. import trials
 from ..trials import D
 
 STEPS = 40000  #: a run that needs more is given up
+SPACE = ('x', 'y', 'z', 'vx', 'vy', 'vz', 'omegaX', 'omegaY', 'omegaZ', 'pressure', 'volumeRatio', 'equivalentStress', 'plasticStrain', 'temperature')  #: of automata in space
 FIELDS = ('x', 'y', 'vx', 'vy', 'omega', 'pressure', 'volumeRatio', 'equivalentStress', 'plasticStrain', 'temperature')
 VIEWS = ('x', 'y', 'vx', 'vy', 'pressure', 'sxx', 'syy', 'sxy', 'plasticStrain')
+
+
+def fieldsOf(engine):
+	"""Names of the fields that must be finite, of a McaEngine."""
+	return SPACE if engine.dimension == 3 else FIELDS
 
 
 class StressError(RuntimeError):
@@ -67,7 +73,7 @@ class Watch:
 		booked = e['booked' if self.couplers else 'bookedError']
 		# the engine takes its sum to the time of the stresses itself
 		return dict(kinetic=e['kinetic'], late=0., early=0., level=e['total'] - e['kinetic'], booked=booked, px=e['momentumX'] - e['impulseX'], py=e['momentumY'] - e['impulseY'],
-		            given=e.get('external', 0.))
+		            pz=e.get('momentumZ', 0.) - e.get('impulseZ', 0.), given=e.get('external', 0.))
 
 	def stored(self):
 		"""Elastic energy of the grid from its state [J/m]: volumetric by (4) of the present cells, deviatoric s:s/4G."""
@@ -106,7 +112,7 @@ class Watch:
 		total = b['kinetic'] + b['level'] + 0.5 * (three[0]['late'] + b['late'] + b['early'] + three[2]['early'])
 		surplus = (total - f['total']) / f['scale']
 		now = dict(energy=max(surplus, 0.) if self.automata is None else abs(surplus), booked=abs(b['booked'] - f['booked']) / f['scale'],
-		           momentum=math.hypot(b['px'] - f['px'], b['py'] - f['py']) / math.sqrt(2 * f['mass'] * f['scale']), growth=b['kinetic'] / f['scale'])
+		           momentum=math.hypot(*(b[k] - f[k] for k in ('px', 'py', 'pz') if k in b)) / math.sqrt(2 * f['mass'] * f['scale']), growth=b['kinetic'] / f['scale'])
 		for k, v in now.items():
 			w[k] = max(w[k], v) if v == v else math.nan  # a number that is not one stays
 
@@ -125,7 +131,7 @@ class Watch:
 
 	def finite(self):
 		"""Every number of the state is one."""
-		ok = self.automata is None or all(np.isfinite(self.automata.field(k)).all() for k in FIELDS)
+		ok = self.automata is None or all(np.isfinite(self.automata.field(k)).all() for k in fieldsOf(self.automata))
 		for b in range(len(self.grid.blocks) if self.grid is not None else 0):
 			ok = ok and all(np.isfinite(self.grid.view(b, k)).all() for k in VIEWS)
 		return bool(ok)
