@@ -69,7 +69,7 @@ Extra Solver::extra()
 		X.contactForce = std::as_const(scratch.force).planes();
 	for (int c = 0; contacts.size() && c < turns; c++) X.contactT[c] = turnPlane(scratch.torque, c).data();
 	if (!options.account) return X;
-	accountForce.volumetric.resize(store.size()), accountForce.viscous.resize(store.size());
+	store.resizeShares(store.size()), accountForce.volumetric.resize(store.size()), accountForce.viscous.resize(store.size());
 	X.account = true, X.volumetric = accountForce.volumetric.planes(), X.viscous = accountForce.viscous.planes();
 	return X;
 }

@@ -22,6 +22,7 @@ template <class S> void packRecords(const S& store, double* to, size_t i)
 struct LinkStresses {
 	std::vector<double> s, tau; ///< J times normal and shear pair stress of this side [Pa]
 	void                resizeStresses(size_t links) { s.assign(links, 0.), tau.assign(links, 0.); }
+	void                resizeShares(size_t) { }
 	size_t              stresses() const { return s.size() == tau.size() ? s.size() : 0; }
 	Side<double>        stressAt(size_t slot) const { return { s[slot], tau[slot] }; }
 	void                setStress(size_t slot, Side<double> v) { s[slot] = v.normal, tau[slot] = v.shear; }

@@ -23,16 +23,12 @@ namespace {
 		}
 		return q;
 	}
-	/// For the account: mean and viscous pressures of automata.
-	struct Pressures {
-		v8 mean, viscous;
+	/// For the account: with what mean and viscous pressures push.
+	struct Shares {
+		Tensor<v8> volume;
+		v8         mean, viscous;
+		Shares(const BlockView& V, const int32_t* at) { gather(V.sharesOfAll, sharesSize, at, volume, mean, viscous); }
 	};
-	MCA_INLINE Pressures pressures(const BlockView& V, const int32_t* at)
-	{
-		Pressures p;
-		gather2(V.node + pressuresAt, nodeSize, at, p.mean, p.viscous);
-		return p;
-	}
 	template <bool intact, bool mixed, bool viscous, bool account> void run(const BlockView& V, const Store& S, const Extra& E)
 	{
 		const PairViscosity own = ofLink(viscosityOf(V.material), VolumeRule::affine);
@@ -59,8 +55,8 @@ namespace {
 				const Vec<v8> mine = gatherTraction(V.tractions(k, g), inRow), theirSide = tractionsOfOthers(V.tractionOfAll, j, k);
 				const Vec<v8> both  = ofBothSides(pairArea(w, dij), mine, theirSide);
 				const v8      part  = weights<intact>(bits, k);
-				const Vec<v8> pushes = linkPush(push, theirs, k), // i by its negative
-					      press = choose<intact>(on, intact ? pushes : pushes * part, none);
+				const Vec<v8> all = linkPush(push, theirs, k), // i by its negative
+					      press = choose<intact>(on, intact ? all : all * part, none);
 				v8            q {};
 				if (viscous) {
 					const v8 closing = dot(r, other.velocity - v);
@@ -68,8 +64,8 @@ namespace {
 						  : w * viscousCoefficient(closing, invR2, own.linear, own.quadratic, Lattice::width(V.d));
 				}
 				if (account) {
-					const Pressures a = pressures(V, self + g), b = pressures(V, j);
-					const Vec<v8>   p = times(push.volume, k) * part, o = times(theirs.volume, k) * part;
+					const Shares  a(V, self + g), b(V, j);
+					const Vec<v8> p = times(a.volume, k) * part, o = times(b.volume, k) * part;
 					ofViscosity = fma(q, r, ofViscosity) - choose<intact>(on, fma(a.viscous, p, o * b.viscous), none);
 					ofPressure += -choose<intact>(on, fma(a.mean, p, o * b.mean), none);
 				}
@@ -102,10 +98,11 @@ void forcePass(Store& S, size_t b, VolumeRule, const Extra& E)
 {
 	prefetchLinks(S, b);
 	const BlockView V(S, b);
-	const bool viscous = ofLink(viscosityOf(V.material), VolumeRule::affine).linear > 0., plain = !V.block.mixed && !E.account;
+	const bool viscous = ofLink(viscosityOf(V.material), VolumeRule::affine).linear > 0.;
 	// the rare ones share a version
-	if (plain) choices([&](auto intact, auto friction) { run<intact.value, false, friction.value, false>(V, S, E); }, V.block.intact, viscous);
-	else choices([&](auto account) { run<false, true, true, account.value>(V, S, E); }, E.account);
+	if (V.block.mixed) choices([&](auto account) { run<false, true, true, account.value>(V, S, E); }, E.account);
+	else if (E.account) choices([&](auto intact) { run<intact.value, false, true, true>(V, S, E); }, V.block.intact);
+	else choices([&](auto intact, auto friction) { run<intact.value, false, friction.value, false>(V, S, E); }, V.block.intact, viscous);
 	if (V.block.contact && E.contactT[0]) addContacts(V, E);
 }
 }

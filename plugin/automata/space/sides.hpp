@@ -7,23 +7,25 @@
 
 namespace mca::automata {
 
-/// Numbers of a record of pushes: those of Pushes.
-constexpr int pushSize = 16;
+/// Numbers of a record of pushes: those of Pushes; of one for the account: affinePush() times the cell, J times the mean and the viscous pressure.
+constexpr int pushSize = 16, sharesSize = tensorSize;
 /// Numbers of a record of motion, and places in it behind position and velocity.
-constexpr int nodeSize = 12, spinAt = 6, dilationAt = 9, pressuresAt = 10; ///< for the account: mean and viscous pressure
+constexpr int nodeSize = 12, spinAt = 6;
 /// Writes the motion of the eight automata from i on; the rest comes from the passes.
 template <class S> void packRecords(const S& store, double* to, size_t i)
 {
 	const Vec<v8> r = load(store.position.planes(), i), v = load(store.velocity.planes(), i), w = load(store.omega.planes(), i);
 	scatter4(to, nodeSize, r[0], r[1], r[2], v[0]);
 	scatter4(to + 4, nodeSize, v[1], v[2], w[0], w[1]);
-	scatter4(to + 8, nodeSize, w[2], load(&store.dTheta[i]), v8 {}, v8 {});
+	scatter4(to + 8, nodeSize, w[2], v8 {}, v8 {}, v8 {});
 }
 
 constexpr int tractionSize = 4; ///< numbers of the record of a traction: the other side reads it whole
 struct LinkStresses {
 	std::vector<double> traction; ///< a record for each link: J times the traction of this side [Pa], 0
+	std::vector<double> shares;   ///< sharesSize per automaton, for the account; rebuilt in every step
 	void                resizeStresses(size_t links) { traction.assign(links * tractionSize, 0.); }
+	void                resizeShares(size_t automata) { shares.resize(automata * sharesSize); }
 	size_t              stresses() const { return traction.size() / tractionSize; }
 	Side<double>        stressAt(size_t slot) const
 	{

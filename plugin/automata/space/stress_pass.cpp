@@ -207,11 +207,12 @@ namespace {
 		}
 		for (int l = 0; l < blockSize; l++) cell[l] = V.cell[l] / (shareOfStar(V.flags[l], V.weight[l]) * V.J[l]);
 		for (int g = 0; g < blockSize; g += lanes) { // factor = 0: nothing pushes
-			double* push = V.push + pushSize * g;
-			scatter(push, pushSize, gatherPushes(push, inRow).volume * load(cell + g), load(acting + g), own.lanes(g));
+			double*          at     = V.push + pushSize * g;
+			const Tensor<v8> volume = gatherPushes(at, inRow).force * load(cell + g); // from the volume pass
+			const Pushes<v8> p      = pushes(volume, load(acting + g), own.lanes(g));
+			scatter(at, pushSize, p.force, p.own);
+			if (account) scatter(V.shares + sharesSize * g, sharesSize, volume, load(V.J + g) * load(V.mean + g), load(V.J + g) * load(V.viscous + g));
 		}
-		for (int l = 0; account && l < blockSize; l++)
-			V.record[nodeSize * l + pressuresAt] = V.J[l] * V.mean[l], V.record[nodeSize * l + pressuresAt + 1] = V.J[l] * V.viscous[l];
 	}
 	double fractureCriteria(const BlockView& V, const Sums& sums, const Returns& R)
 	{

@@ -8,6 +8,8 @@ struct BlockView : BlockBase {
 	const Planes<const double> omega    = std::as_const(store.omega).planes(base);
 	const Planes<double>       torque   = store.torque.planes(base);
 	double*                    traction = at(store.traction, nLinks * tractionSize);
+	double*                    shares   = at(store.shares, sharesSize);
+	const double*              sharesOfAll = store.shares.data();
 	const double*              tractionOfAll = store.traction.data();
 	const SymmetricPlanes      deviator = deviators(store, base);
 	BlockView(Store& S, size_t b)
@@ -56,7 +58,7 @@ MCA_INLINE Vec<v8> gatherTraction(const double* traction, const int32_t* at)
 MCA_INLINE Pushes<v8> gatherPushes(const double* push, const int32_t* at)
 {
 	Pushes<v8> p;
-	gather(push, pushSize, at, p.volume, p.pressure, p.own);
+	gather(push, pushSize, at, p.force, p.own);
 	return p;
 }
 }

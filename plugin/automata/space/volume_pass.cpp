@@ -119,6 +119,5 @@ void volumePass(Store& S, size_t b, VolumeRule, const Extra& X, bool init, Block
 		choices([&](auto whole, auto mixed) { run<whole.value && !mixed.value, mixed.value, law.value>(V, contactSum, X.perMove, init, out); },
 		        V.block.intact, V.block.mixed);
 	});
-	for (int l = 0; l < blockSize; l++) V.record[nodeSize * l + dilationAt] = V.dTheta[l];
 }
 }

@@ -163,18 +163,21 @@ MCA_INLINE Symmetric<double> ownPush(const Symmetric<double>& deviator, const Sy
 }
 /// P with the mean of it [Pa].
 MCA_INLINE double meanPressure(double P, const Symmetric<double>& own) { return P + (1. / 3.) * trace(own); }
-/// With what an automaton pushes its neighbours: link k by (pressure + own) volume e_k [N].
+/// With what an automaton pushes its neighbours.
 template <class T> struct Pushes {
-	Tensor<T>    volume;   ///< affinePush() times the cell over J [m2]
-	T            pressure; ///< J times P with the viscous one [Pa]
-	Symmetric<T> own;      ///< J times ownPush(); nothing where links span no volume
+	Tensor<T>    force; ///< along e_k that on link k [N]
+	Symmetric<T> own;   ///< J times ownPush(); nothing where links span no volume [Pa]
 };
-/// What both ends of link k push the first with, as its negative [N].
-template <class T> MCA_INLINE Vec<T> linkPush(const Pushes<T>& a, const Pushes<T>& b, int k)
+/// volume: affinePush() times the cell over J [m2]; pressure: J times P with the viscous one [Pa]
+template <class T> MCA_INLINE Pushes<T> pushes(const Tensor<T>& volume, T pressure, const Symmetric<T>& own)
 {
-	const Vec<T> mine = times(a.volume, k), theirs = times(b.volume, k);
-	return fma(a.pressure, mine, theirs * b.pressure) + times(a.own, mine) + times(b.own, theirs);
+	Pushes<T> p { {}, own };
+	for (int c = 0; c < dim; c++)
+		p.force.column[c] = fma(pressure, volume.column[c], times(own, volume.column[c]));
+	return p;
 }
+/// What both ends of link k push the first with, as its negative [N].
+template <class T> MCA_INLINE Vec<T> linkPush(const Pushes<T>& a, const Pushes<T>& b, int k) { return times(a.force, k) + times(b.force, k); }
 /// Couple with which they turn the first, since their strain leaves out what spins explain [N m]; the other has its negative. n: unit vector of the pair,
 /// mine, theirs: weight of the link over spread times the cells of the whole packing times the arm of the other side [m3].
 template <class T> MCA_INLINE Vec<T> linkCouple(const Pushes<T>& a, const Pushes<T>& b, Vec<T> n, T mine, T theirs)

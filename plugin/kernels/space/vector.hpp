@@ -203,18 +203,33 @@ MCA_INLINE void scatter(double* base, int stride, const Tensor<v8>& t)
 	scatter4(base + 8, stride, a[2][2], v8 {}, v8 {}, v8 {});
 }
 
-/// Records of a tensor, a number and a symmetric tensor.
-MCA_INLINE void gather(const double* base, int stride, const int32_t* at, Tensor<v8>& t, v8& a, Symmetric<v8>& s)
+/// Records of a tensor and two numbers.
+MCA_INLINE void gather(const double* base, int stride, const int32_t* at, Tensor<v8>& t, v8& a, v8& b)
 {
 	Vec<v8>* c = t.column;
+	v8       unused;
 	gather4(base, stride, at, c[0][0], c[0][1], c[0][2], c[1][0]), gather4(base + 4, stride, at, c[1][1], c[1][2], c[2][0], c[2][1]);
-	gather4(base + 8, stride, at, c[2][2], a, s.xx, s.yy), gather4(base + 12, stride, at, s.zz, s.yz, s.zx, s.xy);
+	gather4(base + 8, stride, at, c[2][2], a, b, unused);
 }
-MCA_INLINE void scatter(double* base, int stride, const Tensor<v8>& t, v8 a, const Symmetric<v8>& s)
+MCA_INLINE void scatter(double* base, int stride, const Tensor<v8>& t, v8 a, v8 b)
 {
 	const Vec<v8>* c = t.column;
 	scatter4(base, stride, c[0][0], c[0][1], c[0][2], c[1][0]), scatter4(base + 4, stride, c[1][1], c[1][2], c[2][0], c[2][1]);
-	scatter4(base + 8, stride, c[2][2], a, s.xx, s.yy), scatter4(base + 12, stride, s.zz, s.yz, s.zx, s.xy);
+	scatter4(base + 8, stride, c[2][2], a, b, v8 {});
+}
+/// Records of a tensor and a symmetric tensor; the tenth number is unused.
+MCA_INLINE void gather(const double* base, int stride, const int32_t* at, Tensor<v8>& t, Symmetric<v8>& s)
+{
+	Vec<v8>* c = t.column;
+	v8       a;
+	gather4(base, stride, at, c[0][0], c[0][1], c[0][2], c[1][0]), gather4(base + 4, stride, at, c[1][1], c[1][2], c[2][0], c[2][1]);
+	gather4(base + 8, stride, at, c[2][2], a, s.xx, s.yy), gather4(base + 12, stride, at, s.zz, s.yz, s.zx, s.xy);
+}
+MCA_INLINE void scatter(double* base, int stride, const Tensor<v8>& t, const Symmetric<v8>& s)
+{
+	const Vec<v8>* c = t.column;
+	scatter4(base, stride, c[0][0], c[0][1], c[0][2], c[1][0]), scatter4(base + 4, stride, c[1][1], c[1][2], c[2][0], c[2][1]);
+	scatter4(base + 8, stride, c[2][2], v8 {}, s.xx, s.yy), scatter4(base + 12, stride, s.zz, s.yz, s.zx, s.xy);
 }
 
 // Cells of a regular grid.

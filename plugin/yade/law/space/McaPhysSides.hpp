@@ -139,7 +139,7 @@ struct LinkPush {
 	mca::Pushes<Real> mine, theirs; ///< for the couple
 	Real               weight = 0, dMine = 0, dTheirs = 0;
 };
-inline mca::Pushes<Real> pushesOf(const McaLawState& l) { return { tensorOf(l.push), l.pushPressure, symmetricOf(l.pushStress) }; }
+inline mca::Pushes<Real> pushesOf(const McaLawState& l) { return mca::pushes(tensorOf(l.push), l.pushPressure, symmetricOf(l.pushStress)); }
 inline LinkPush          pushOnLink(const McaLawState& a, const McaLawState& b, int slot)
 {
 	const auto A = pushesOf(a), B = pushesOf(b);
