@@ -35,7 +35,7 @@ struct BlockBase {
 
 /// Number of automata from which on their arrays are beyond the caches: a pass then asks for those of the next block while it computes this one.
 /// Neighbours are in the same block or in those before and behind it, so their records are there when they are gathered.
-constexpr size_t prefetchFrom = 40000;
+constexpr size_t prefetchFrom = dim == 2 ? 40000 : 4000;
 template <class T> MCA_INLINE void prefetch(const std::vector<T>& v, size_t block, size_t each)
 {
 	const char* p = reinterpret_cast<const char*>(v.data() + block * blockSize * each);

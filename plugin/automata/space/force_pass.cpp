@@ -2,9 +2,14 @@
 // Pass 3 in space: forces and torques from the pressures, tractions and velocities of both sides of each link.
 #include "../passes.hpp"
 #include "../view.hpp"
+#include <utility>
 
 namespace mca::automata {
 namespace {
+	template <int... k, class F> MCA_INLINE void eachOf(std::integer_sequence<int, k...>, F&& f) { (f(std::integral_constant<int, k> {}), ...); }
+	/// f(number of a link as a compile-time constant)
+	template <class F> MCA_INLINE void eachLink(F&& f) { eachOf(std::make_integer_sequence<int, nLinks> {}, f); }
+	template <class P> MCA_INLINE void add(const P& to, size_t at, Vec<v8> a) { store(to, at, load(to, at) + a); }
 	/// Tractions of link k at its other ends j: in the opposite plane of their blocks.
 	MCA_INLINE Vec<v8> tractionsOfOthers(const double* traction, const int32_t* j, int k)
 	{
@@ -27,63 +32,80 @@ namespace {
 	struct Shares {
 		Tensor<v8> volume;
 		v8         mean, viscous;
-		Shares(const BlockView& V, const int32_t* at) { gather(V.sharesOfAll, sharesSize, at, volume, mean, viscous); }
+		Shares(const double* shares, const int32_t* at) { gather(shares, sharesSize, at, volume, mean, viscous); }
 	};
+	/// Own pushes of a block.
+	struct OwnPushes {
+		TensorLanes<blockSize>    force;
+		SymmetricLanes<blockSize> own;
+		explicit OwnPushes(const BlockView& V)
+		{
+			for (int g = 0; g < blockSize; g += lanes) {
+				const Pushes<v8> p = gatherPushes(V.push + pushSize * g, inRow);
+				force.setLanes(g, p.force), own.setLanes(g, p.own);
+			}
+		}
+		Pushes<v8> at(int g) const { return { force.lanes(g), own.lanes(g) }; }
+	};
+	/// Force and torque of link k on the eight automata from lane g on.
+	template <int k, bool intact, bool mixed, bool viscous, bool account>
+	MCA_INLINE void addLink(const BlockView& V, const Store& S, const Extra& E, const OwnPushes& pushes, const PairViscosity& own, int g)
+	{
+		const int32_t*   j      = V.others(k, g);
+		const Vec<v8>    x      = load(V.position, g), none {};
+		const m8         bits   = intact ? m8 {} : widen(V.flags + g);
+		const Motion     other  = viscous ? gatherVelocity(V.node, j) : Motion { gatherPosition(V.node, j), none, none };
+		const Pushes<v8> push   = pushes.at(g), theirs = gatherPushes(V.pushOfAll, j);
+		const Vec<v8>    r      = other.position - x;
+		const m8         on     = holding(bits, k);
+		const v8         w      = choose<intact>(on, weights<intact>(bits, k), splat(0.));
+		v8               dij    = splat(V.d);
+		if (mixed)
+			for (int l = 0; l < lanes; l++) dij[l] = 0.5 * (V.d + V.diameterOfAll[j[l]]);
+		const v8      r2   = choose<intact>(on, dot(r, r), dij * dij), invR2 = 1. / r2;
+		const Vec<v8> mine = gatherTraction(V.tractions(k, g), inRow), theirSide = tractionsOfOthers(V.tractionOfAll, j, k);
+		const Vec<v8> both = ofBothSides(pairArea(w, dij), mine, theirSide);
+		const v8      part = weights<intact>(bits, k);
+		const Vec<v8> all  = linkPush(push, theirs, k), // i by its negative
+			      press = choose<intact>(on, intact ? all : all * part, none);
+		v8            q {};
+		if (viscous) {
+			const v8 closing = dot(r, other.velocity - load(V.velocity, g));
+			q = mixed ? viscosityMixed(V, S, j, closing, invR2, dij, w)
+				  : w * viscousCoefficient(closing, invR2, own.linear, own.quadratic, Lattice::width(V.d));
+		}
+		if (account) {
+			const Shares  a(V.shares + sharesSize * g, inRow), b(V.sharesOfAll, j);
+			const Vec<v8> p = times(a.volume, k) * part, o = times(b.volume, k) * part;
+			add(E.viscous, V.base + g, r * q - choose<intact>(on, fma(a.viscous, p, o * b.viscous), none));
+			add(E.volumetric, V.base + g, -choose<intact>(on, fma(a.mean, p, o * b.mean), none));
+		}
+		const v8      perLength = root(invR2), whole = splat(Lattice::cell(V.d) / Lattice::spread);
+		const Vec<v8> turning = cross(r, both) * perLength, n = r * perLength;
+		v8            q1 = splat(0.5), ofMine = w * (whole * 0.5), ofTheirs = ofMine;
+		if (mixed)
+			for (int l = 0; l < lanes; l++) {
+				q1[l]       = arm(V.d, V.diameterOfAll[j[l]]);
+				ofMine[l]   = w[l] * (1. - q1[l]) * whole[l];
+				ofTheirs[l] = w[l] * q1[l] * (Lattice::cell(V.diameterOfAll[j[l]]) / Lattice::spread);
+			}
+		add(V.force, g, linkForce(r, both, perLength, q, press));
+		add(V.torque, g, fma(q1, turning, linkCouple(push, theirs, n, ofMine, ofTheirs)));
+	}
+	/// Link by link through the whole block: the code of all twelve at once is longer than the cache for instructions.
 	template <bool intact, bool mixed, bool viscous, bool account> void run(const BlockView& V, const Store& S, const Extra& E)
 	{
 		const PairViscosity own = ofLink(viscosityOf(V.material), VolumeRule::affine);
-		const double        whole = Lattice::cell(V.d) / Lattice::spread;
-		int32_t             self[blockSize];
-		for (int l = 0; l < blockSize; l++) self[l] = int32_t(V.base) + l;
+		const OwnPushes     pushes(V);
 		for (int g = 0; g < blockSize; g += lanes) {
-			const Vec<v8>    x = load(V.position, g), v = load(V.velocity, g), none {};
-			const m8         bits = intact ? m8 {} : widen(V.flags + g);
-			const Pushes<v8> push = gatherPushes(V.pushOfAll, self + g);
-			Vec<v8>          force = none, torque = none, ofPressure = none, ofViscosity = none;
-#pragma GCC unroll 12
-			for (int k = 0; k < nLinks; k++) {
-				const int32_t*   j     = V.others(k, g);
-				const Motion     other = viscous ? gatherVelocity(V.node, j) : Motion { gatherPosition(V.node, j), none, none };
-				const Pushes<v8> theirs = gatherPushes(V.pushOfAll, j);
-				const Vec<v8>    r   = other.position - x;
-				const m8         on  = holding(bits, k);
-				const v8         w   = choose<intact>(on, weights<intact>(bits, k), splat(0.));
-				v8               dij = splat(V.d);
-				if (mixed)
-					for (int l = 0; l < lanes; l++) dij[l] = 0.5 * (V.d + V.diameterOfAll[j[l]]);
-				const v8      r2 = choose<intact>(on, dot(r, r), dij * dij), invR2 = 1. / r2;
-				const Vec<v8> mine = gatherTraction(V.tractions(k, g), inRow), theirSide = tractionsOfOthers(V.tractionOfAll, j, k);
-				const Vec<v8> both  = ofBothSides(pairArea(w, dij), mine, theirSide);
-				const v8      part  = weights<intact>(bits, k);
-				const Vec<v8> all = linkPush(push, theirs, k), // i by its negative
-					      press = choose<intact>(on, intact ? all : all * part, none);
-				v8            q {};
-				if (viscous) {
-					const v8 closing = dot(r, other.velocity - v);
-					q = mixed ? viscosityMixed(V, S, j, closing, invR2, dij, w)
-						  : w * viscousCoefficient(closing, invR2, own.linear, own.quadratic, Lattice::width(V.d));
-				}
-				if (account) {
-					const Shares  a(V, self + g), b(V, j);
-					const Vec<v8> p = times(a.volume, k) * part, o = times(b.volume, k) * part;
-					ofViscosity = fma(q, r, ofViscosity) - choose<intact>(on, fma(a.viscous, p, o * b.viscous), none);
-					ofPressure += -choose<intact>(on, fma(a.mean, p, o * b.mean), none);
-				}
-				const v8      perLength = root(invR2);
-				const Vec<v8> turning = cross(r, both) * perLength, n = r * perLength;
-				force += linkForce(r, both, perLength, q, press);
-				v8 q1 = splat(0.5), ofMine = w * (whole * 0.5), ofTheirs = ofMine;
-				if (mixed)
-					for (int l = 0; l < lanes; l++) {
-						q1[l]    = arm(V.d, V.diameterOfAll[j[l]]);
-						ofMine[l]   = w[l] * (1. - q1[l]) * whole;
-						ofTheirs[l] = w[l] * q1[l] * (Lattice::cell(V.diameterOfAll[j[l]]) / Lattice::spread);
-					}
-				torque = fma(q1, turning, torque) + linkCouple(push, theirs, n, ofMine, ofTheirs);
-			}
-			store(V.force, g, force), store(V.torque, g, torque);
-			if (account) store(E.volumetric, V.base + g, ofPressure), store(E.viscous, V.base + g, ofViscosity);
+			const Vec<v8> none {};
+			store(V.force, g, none), store(V.torque, g, none);
+			if (account) store(E.volumetric, V.base + g, none), store(E.viscous, V.base + g, none);
 		}
+		eachLink([&](auto k) {
+#pragma GCC unroll 1
+			for (int g = 0; g < blockSize; g += lanes) addLink<k.value, intact, mixed, viscous, account>(V, S, E, pushes, own, g);
+		});
 	}
 	void addContacts(const BlockView& V, const Extra& E)
 	{

@@ -211,7 +211,8 @@ namespace {
 			const Tensor<v8> volume = gatherPushes(at, inRow).force * load(cell + g); // from the volume pass
 			const Pushes<v8> p      = pushes(volume, load(acting + g), own.lanes(g));
 			scatter(at, pushSize, p.force, p.own);
-			if (account) scatter(V.shares + sharesSize * g, sharesSize, volume, load(V.J + g) * load(V.mean + g), load(V.J + g) * load(V.viscous + g));
+			const v8 J = load(V.J + g);
+			if (account) scatter(V.shares + sharesSize * g, sharesSize, volume, J * load(V.mean + g), J * load(V.viscous + g));
 		}
 	}
 	double fractureCriteria(const BlockView& V, const Sums& sums, const Returns& R)

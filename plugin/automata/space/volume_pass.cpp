@@ -53,6 +53,23 @@ namespace {
 			to.dyads.set(l, F), to.directions.set(l, e);
 		}
 	}
+	/// What follows from the sums alone. In loops of its own, eight automata at once: in that over single ones tensors would keep it from being vectorised.
+	struct Shape {
+		alignas(64) double det[blockSize], slope[blockSize], bulk[blockSize], shear[blockSize]; ///< linkDeterminant(), volumeSlope(), stiffening()
+	};
+	/// Fills the record of pushes, too: affinePush().
+	template <bool intact, EosKind law> void shapes(const BlockView& V, const VolumeConstants<law>& c, const LinkSums& L, Shape& to)
+	{
+		for (int g = 0; g < blockSize; g += lanes) {
+			const Tensor<v8>    F = L.dyads.lanes(g);
+			const Symmetric<v8> e = intact ? isotropic(splat(Lattice::spread)) : L.directions.lanes(g);
+			const v8            factor = load(V.factor + g);
+			const Stiffening<v8> s = stiffening(F, e, factor, load(L.nearest2 + g) * c.d2, c.d2);
+			store(to.det + g, linkDeterminant(F, c.perVolume)), store(to.slope + g, volumeSlope(c, F, e, factor));
+			store(to.bulk + g, s.bulk), store(to.shear + g, s.shear);
+			scatter(V.push + pushSize * g, pushSize, affinePush(c, F, factor));
+		}
+	}
 	/// Volumes that contacts alone would give, and what they push with.
 	template <EosKind law> void contactShares(const BlockView& V, const VolumeConstants<law>& c, const double* contactSum, BlockResult& out)
 	{
@@ -81,28 +98,27 @@ namespace {
 			const AffineRest r = affineRest(c, L.dyads.at(l));
 			V.factor[l] = r.factor, V.rest[l] = r.rest;
 		}
+		Shape shape;
+		shapes<intact>(V, c, L, shape);
+		const auto ratio = [&](int l) { return affineRatio(shape.det[l], V.factor[l], V.rest[l], contactSum ? contactSum[l] : 0.); };
+		for (int l = 0; init && l < blockSize; l++) V.J[l] = ratio(l); // no dilation yet
 		double nearest = 1e300, stiffest = 0, closing = 0, widest = 1.;
 		int    clampCount = 0, badCount = 0;
 #pragma omp simd reduction(max : stiffest, closing, widest) reduction(+ : clampCount, badCount) reduction(min : nearest)
 		for (int l = 0; l < blockSize; l++) {
-			const Tensor<double>    F = L.dyads.at(l);
-			const Symmetric<double> e = intact ? isotropic(Lattice::spread) : L.directions.at(l);
-			const double            J = affineRatio(c, F, V.factor[l], V.rest[l], contactSum ? contactSum[l] : 0.), Jo = init ? J : V.J[l];
-			const PressureState     p = pressureStep(c, J, Jo, { V.P[l], hot ? V.heat[l] : 0. }, V.factor[l] > 0.);
-			const double            slope = volumeSlope(c, F, e, V.factor[l]);
-			stiffest    = max(stiffest, affineStiffness(c, J, F, e, V.factor[l], L.nearest2[l] * c.d2));
+			const double        J = ratio(l), Jo = V.J[l];
+			const PressureState p = pressureStep(c, J, Jo, { V.P[l], hot ? V.heat[l] : 0. }, V.factor[l] > 0.);
+			stiffest    = max(stiffest, stiffness<law>(c, J, shape.bulk[l], shape.shear[l]));
 			V.dTheta[l] = dilation(J, Jo), V.J[l] = J, V.P[l] = p.P;
-			const double q = V.factor[l] > 0. ? viscosity.pressure(V.dTheta[l], slope, tangent<law>(c.eos, J - 1.)) : 0.;
+			const double q = V.factor[l] > 0. ? viscosity.pressure(V.dTheta[l], shape.slope[l], tangent<law>(c.eos, J - 1.)) : 0.;
 			V.viscous[l]   = perMove > 0. ? q : V.viscous[l]; // forces once more without a move: as before
 			if (hot) V.heat[l] = p.e;
-			L.dyads.set(l, affinePush(c, F, V.factor[l]));
 			closing = max(closing, -V.dTheta[l]);
 			widest  = max(widest, J);
 			nearest = min(nearest, L.nearest2[l]);
 			clampCount += J - 1. < c.clampAt ? 1 : 0;
 			badCount += validVolume(J) ? 0 : 1;
 		}
-		for (int g = 0; g < blockSize; g += lanes) scatter(V.push + pushSize * g, pushSize, L.dyads.lanes(g));
 		out.nearest = nearest, out.stiffest = stiffest, out.closing = closing, out.widest = widest, out.clamped = clampCount;
 		if (contactSum) contactShares(V, c, contactSum, out);
 		for (int l = 0; badCount && l < V.block.count && out.bad < 0; l++)

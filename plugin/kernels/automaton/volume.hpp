@@ -57,7 +57,7 @@ template <VolumeRule rule> MCA_INLINE double pressureShape(double d, double invR
 }
 
 /// det F of links with this sum of r (x) e_k; perVolume: of the lattice.
-MCA_INLINE double linkDeterminant(const Tensor<double>& sum, double perVolume) { return determinant(sum) * perVolume; }
+template <class T> MCA_INLINE T linkDeterminant(const Tensor<T>& sum, double perVolume) { return determinant(sum) * perVolume; }
 
 /// What the volume of an automaton needs of its material and diameter; law: kind of its equation of state.
 template <EosKind law> struct VolumeConstants {
@@ -126,24 +126,27 @@ template <EosKind law> MCA_INLINE AffineRest affineRest(const VolumeConstants<la
 	const double det = linkDeterminant(sum, c.perVolume), factor = det > minVolume ? 1. / det : 0.;
 	return { factor, factor > 0. ? 1. - factor * det : 0. };
 }
-/// J by the links, or by the contacts (sum of their volume terms) where the links have none.
+/// J by the links (det: linkDeterminant()), or by the contacts (sum of their volume terms) where the links have none.
+MCA_INLINE double affineRatio(double det, double factor, double rest, double contactSum)
+{
+	return factor > 0. ? factor * det + rest : contactRatio(contactSum);
+}
 template <EosKind law> MCA_INLINE double affineRatio(const VolumeConstants<law>& c, const Tensor<double>& sum, double factor, double rest, double contactSum)
 {
-	const double det = linkDeterminant(sum, c.perVolume);
-	return factor > 0. ? factor * det + rest : contactRatio(contactSum);
+	return affineRatio(linkDeterminant(sum, c.perVolume), factor, rest, contactSum);
 }
 /// The factor with which other links measure the volume J; det: linkDeterminant() of these links.
 MCA_INLINE double affineFactor(double J, double rest, double det) { return det > minVolume && J > 0. ? (J - rest) / det : 0.; }
 /// A pressure P pushes link k by P cell affinePush() e_k [N/m]: P dV/dr, V = cell J. [1/m]
-template <EosKind law> MCA_INLINE Tensor<double> affinePush(const VolumeConstants<law>& c, const Tensor<double>& sum, double factor)
+template <EosKind law, class T> MCA_INLINE Tensor<T> affinePush(const VolumeConstants<law>& c, const Tensor<T>& sum, T factor)
 {
 	return cofactor(sum) * (factor * c.perVolume);
 }
 /// Sum of (dJ/dr_k)^2 over the links, over that of the perfect packing, at least 1 [-]: how much more the volume feels the motion of neighbours. directions:
 /// sum of e_k (x) e_k.
-template <EosKind law> MCA_INLINE double volumeSlope(const VolumeConstants<law>& c, const Tensor<double>& F, const Symmetric<double>& e, double factor)
+template <EosKind law, class T> MCA_INLINE T volumeSlope(const VolumeConstants<law>& c, const Tensor<T>& F, const Symmetric<T>& e, T factor)
 {
-	return max(factor * factor * squareOfPushes(F, e) * c.perSlope * (1. / nLinks), 1.);
+	return max(factor * factor * squareOfPushes(F, e) * c.perSlope * (1. / nLinks), T {} + 1.);
 }
 /// How much stiffer sound is at outlines than inside, over the slope of the volume: covers every body of triangles, of which a single one is the stiffest.
 constexpr double atOutlines = 2.1;
