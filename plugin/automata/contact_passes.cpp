@@ -47,7 +47,7 @@ namespace {
 
 	// One half-contact each, in functions of their own: a vector or pair declared in the body of a loop keeps it from being vectorised.
 
-	template <VolumeRule rule> MCA_INLINE void volumeTermOf(const View& V, const Planes<const double>& x, long c)
+	template <VolumeRule rule> MCA_INLINE void volumeTermOf(const View& V, const Planes<const double>& x, const double* factor, long c)
 	{
 		const int32_t     i = V.owner[c], j = V.other[c];
 		const Vec<double> r    = x.at(j) - x.at(i);
@@ -55,7 +55,7 @@ namespace {
 		V.between.set(c, r), V.r2[c] = r2;
 		V.pushing[c] = on;
 		V.first[c]       = on > 0. ? volumeTerm<rule>(rest, r2) : 0.;
-		V.rest[c]    = restAfter(rest, r2, d);
+		V.rest[c]    = restAfter(rest, r2, meetsAt(d, factor[i]));
 		V.second[c]       = on > 0. ? r2 / (rest * rest) : 1.;
 	}
 	template <VolumeRule rule> void volumeTerms(const Store& S, Contacts& C)
@@ -63,9 +63,10 @@ namespace {
 		contactParts(C, [&](long first, long last) {
 			const View V(C);
 			const auto x = S.position.planes();
+			const double* factor = S.factor.data();
 #pragma omp simd
 			for (long c = first; c < last; c++)
-				volumeTermOf<rule>(V, x, c);
+				volumeTermOf<rule>(V, x, factor, c);
 		});
 	}
 

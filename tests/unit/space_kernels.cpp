@@ -233,3 +233,12 @@ TEST(SpaceFrame, IsFoundFromItsLinks)
 		for (int k = 0; k < n; k++) EXPECT_NEAR(match(f, bearing[k]).cosine, 1., 1e-13);
 	}
 }
+
+TEST(SpaceKernels, LooseAutomataFillTheRoomOfThePackingAtRandom)
+{
+	EXPECT_EQ(meetsAt(2., 0.7), 2.);
+	EXPECT_NEAR(std::pow(meetsAt(2., 0.) / 2., 3), 0.64 / (M_PI / std::sqrt(18.)), 2e-4); // random fill over that of the packing
+	EXPECT_EQ(restAfter(1., 0.9, meetsAt(1., 0.)), 1.);                                   // it pushes: nothing changes
+	EXPECT_EQ(restAfter(1., 1. - 1e-15, meetsAt(1., 0.)), meetsAt(1., 0.));               // at its rest distance but for round-off
+	EXPECT_EQ(restAfter(0.9, 0.85, meetsAt(1., 0.)), std::sqrt(0.85));
+}

@@ -25,7 +25,7 @@ void Loop::contactVolume(Row& r)
 			sum += byRule(r.l->rule, [&](auto rule) { return mca::volumeTerm<mca::ofContacts(rule.value)>(rest, r2); });
 			r.nearestContact = std::min(r.nearestContact, r2 / (rest * rest));
 		}
-		p.rest[s.side] = mca::restAfter(rest, r2, p.d);
+		p.rest[s.side] = mca::restAfter(rest, r2, mca::meetsAt(p.d, r.l->factor));
 	}
 	r.l->contactSum = sum;
 }
