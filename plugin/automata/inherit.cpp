@@ -86,7 +86,8 @@ void Solver::inheritContacts(const Solver& old)
 			const int64_t j    = indexIn(old, mate) < 0 ? -1 : indexOf(mate);
 			if (j < 0) {
 				const double r2 = O.distance2(old.contacts.owner[c], old.contacts.other[c]), rest = old.contacts.rest[c];
-				if (pushes(r2, rest, old.contacts.d[c]) > 0.) gone += volumeTerm<ofContacts(VolumeRule::affine)>(rest, r2);
+				if (pushes(r2, rest, old.contacts.d[c]) > 0.)
+					dispatch(options.volumeRule, [&](auto rule) { gone += volumeTerm<ofContacts(rule.value)>(rest, r2); });
 				continue;
 			}
 			contacts.owner.push_back(int32_t(i)), contacts.other.push_back(int32_t(j));

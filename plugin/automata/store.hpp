@@ -43,7 +43,7 @@ struct Store : LinkStresses {
 	// links: nLinks planes per block
 	std::vector<int32_t> neighbour; ///< automaton at the other end, itself where there is none; there the same link is Lattice::opposite(k)
 	// records that neighbours read; rebuilt in every step, so not part of the saved state
-	std::vector<double> node; ///< nodeSize per automaton: position, velocity, omega, dTheta, what the account needs of the pressures
+	std::vector<double> node; ///< nodeSize per automaton: position, velocity, omega; in the plane dTheta and what the account needs of the pressures, too
 	std::vector<double> push; ///< pushSize per automaton, affine rule: with what links are pushed
 	/// All records anew: after building, sorting, loading.
 	void packAll()

@@ -190,19 +190,6 @@ MCA_INLINE void gather(const double* base, int stride, const int32_t* at, Vec<v8
 	v8 unused;
 	gather4(base, stride, at, a[0], a[1], a[2], unused);
 }
-MCA_INLINE void gather(const double* base, int stride, const int32_t* at, Tensor<v8>& t)
-{
-	Vec<v8>*a = t.column, unused;
-	gather4(base, stride, at, a[0][0], a[0][1], a[0][2], a[1][0]), gather4(base + 4, stride, at, a[1][1], a[1][2], a[2][0], a[2][1]);
-	gather4(base + 8, stride, at, a[2][2], unused[0], unused[1], unused[2]);
-}
-MCA_INLINE void scatter(double* base, int stride, const Tensor<v8>& t)
-{
-	const Vec<v8>* a = t.column;
-	scatter4(base, stride, a[0][0], a[0][1], a[0][2], a[1][0]), scatter4(base + 4, stride, a[1][1], a[1][2], a[2][0], a[2][1]);
-	scatter4(base + 8, stride, a[2][2], v8 {}, v8 {}, v8 {});
-}
-
 /// Records of a tensor and two numbers.
 MCA_INLINE void gather(const double* base, int stride, const int32_t* at, Tensor<v8>& t, v8& a, v8& b)
 {
@@ -217,6 +204,7 @@ MCA_INLINE void scatter(double* base, int stride, const Tensor<v8>& t, v8 a, v8 
 	scatter4(base, stride, c[0][0], c[0][1], c[0][2], c[1][0]), scatter4(base + 4, stride, c[1][1], c[1][2], c[2][0], c[2][1]);
 	scatter4(base + 8, stride, c[2][2], a, b, v8 {});
 }
+MCA_INLINE void scatter(double* base, int stride, const Tensor<v8>& t) { scatter(base, stride, t, v8 {}, v8 {}); }
 /// Records of a tensor and a symmetric tensor; the tenth number is unused.
 MCA_INLINE void gather(const double* base, int stride, const int32_t* at, Tensor<v8>& t, Symmetric<v8>& s)
 {
