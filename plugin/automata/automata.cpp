@@ -2,6 +2,7 @@
 #include "automata.hpp"
 #include "solver.hpp"
 #include "start.hpp"
+#include "walls.hpp"
 
 namespace mca::automata {
 namespace {
@@ -42,8 +43,9 @@ namespace {
 			solver.build(list, materials, options, old ? &static_cast<const OfThisDimension*>(old)->solver : nullptr);
 		}
 		void   computeForces() override { solver.computeForces(); }
-		void   integrate(double dt) override { solver.integrate(dt); }
-		double criticalStep() const override { return solver.criticalStep(); }
+		void   integrate(double dt) override { solver.integrate(dt), walls.keep(); }
+		double kick(double dt) const override { return solver.kick(dt); }
+		double criticalStep() const override { return walls.limit(solver.criticalStep()); }
 		int    stiffest() const override { return solver.store.id[solver.stiffestAutomaton()]; }
 
 		void addForce(int id, const Triple& force, const Triple& torque) override { solver.addForce(at(id), vectorOf(force), turnOf(torque)); }
@@ -63,6 +65,7 @@ namespace {
 			if (c.spin) setTurn(S.omega, i, turnOf(*c.spin));
 			if (c.angle) setTurn(S.angle, i, turnOf(*c.angle));
 			if (c.plasticStrain) S.eqps[i] = *c.plasticStrain;
+			if (c.damage) S.damage[i] = *c.damage;
 			if (c.temperature) S.temperature[i] = *c.temperature;
 			if (c.strength) S.strength[i] = *c.strength;
 			if (c.group) S.group[i] = *c.group;
@@ -70,7 +73,11 @@ namespace {
 			for (int k = 0; c.freeSpin && k < turns; k++)
 				turnPlane(S.perInertia, k)[i] = (*c.freeSpin)[size_t(3 - turns + k)] ? 1. / S.inertia[i] : 0.;
 		}
-		void moved() override { solver.moved(); }
+		void moved() override { solver.moved(), walls.forget(); }
+		void setWalls(const std::vector<WallStart>& list) override { walls.set(list); }
+		const std::vector<WallPush>& pushWalls(const std::vector<WallPlace>& at, double level) override { return walls.push(solver, at, level); }
+		std::vector<WallTouch> wallTouches() const override { return walls.touches(); }
+		void                   setWallTouches(const std::vector<WallTouch>& list) override { walls.setTouches(list); }
 		void searchAnew() override { solver.searchAnew(); }
 
 		bool           holds(int id) const override { return solver.indexOf(id) >= 0; }
@@ -92,6 +99,7 @@ namespace {
 			a.pressure = S.mean[i], a.volumeRatio = S.J[i], a.plasticStrain = S.eqps[i], a.temperature = S.temperature[i];
 			a.equivalentStress = solver.equivalentStress(i), a.stressZZ = S.szz[i], a.tension = S.P[i] < 0 ? S.P[i] : 0.;
 			if (!S.heat.empty()) a.dissipated = S.heat[i];
+			if (!S.damage.empty()) a.damage = S.damage[i];
 			a.links = linkCount(S.flags[i]), a.brokenLinks = brokenCount(S.flags[i]);
 			return a;
 		}
@@ -127,6 +135,7 @@ namespace {
 
 	private:
 		Solver solver;
+		Walls  walls;
 		Store& S = solver.store;
 		size_t at(int id) const { return size_t(solver.indexOf(id)); }
 	};
@@ -143,7 +152,7 @@ namespace {
 		std::string list;
 		S.eachShown([&](const char* shown, const auto& from) {
 			list += std::string(shown) + ", ";
-			if (name == shown) known = true, each([&](size_t i) { return from[i]; });
+			if (name == shown) known = true, each([&](size_t i) { return from.empty() ? 0. : from[i]; }); // empty: no material uses it
 		});
 		if (known) return found;
 		if (name == "equivalentStress") return each([&](size_t i) { return solver.equivalentStress(i); });

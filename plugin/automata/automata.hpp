@@ -5,6 +5,7 @@
 #include "../kernels/api.hpp"
 #include "../kernels/dimension.hpp"
 #include "../kernels/material.hpp"
+#include "../kernels/wall.hpp"
 #include "common.hpp"
 #include <array>
 #include <memory>
@@ -27,7 +28,7 @@ using Ways   = std::array<bool, 3>;
 /// One automaton as the caller gives it.
 struct AutomatonStart {
 	Triple  position {}, velocity {}, spin {}, angle {};
-	double  mass = 0, inertia = 0, diameter = 0, weight = 1, strength = 1, eqps = 0;
+	double  mass = 0, inertia = 0, diameter = 0, weight = 1, strength = 1, eqps = 0, damage = 0;
 	double  temperature = 0; ///< [K]; 0: the material's reference temperature
 	int32_t material = 0, id = 0, group = 0;
 	Ways    free { true, true, true }, freeSpin { true, true, true }; ///< per direction: moves, turns as forces say
@@ -44,7 +45,7 @@ struct AutomatonFixed {
 };
 struct AutomatonNow {
 	Triple position {}, velocity {}, spin {}, angle {};
-	double pressure = 0, volumeRatio = 1, plasticStrain = 0, temperature = 0, equivalentStress = 0;
+	double pressure = 0, volumeRatio = 1, plasticStrain = 0, damage = 0, temperature = 0, equivalentStress = 0;
 	double stressZZ = 0; ///< deviator along z [Pa]
 	std::optional<double> dissipated; ///< where a law heats
 	double tension = 0;  ///< the pressure of the equation of state when it is negative [Pa]
@@ -53,9 +54,25 @@ struct AutomatonNow {
 /// What the caller sets.
 struct AutomatonChange {
 	std::optional<Triple>  position, velocity, spin, angle;
-	std::optional<double>  plasticStrain, temperature, strength;
+	std::optional<double>  plasticStrain, damage, temperature, strength;
 	std::optional<int32_t> group;
 	std::optional<Ways>    free, freeSpin;
+};
+
+/// A rigid body beside the automata.
+struct WallStart {
+	int      id = 0;
+	WallForm form;
+	double   friction = 0; ///< Coulomb coefficient [-]; the smaller of both counts
+	double   mass     = 0; ///< [kg], in plane strain kg/m; 0: nothing that touches it moves it
+};
+/// A contact that has held a shear force.
+struct WallTouch {
+	int   automaton = 0, wall = 0; ///< the caller's numbers
+	Point shear;                   ///< on the automaton [N/m, in space N]
+};
+struct WallPush {
+	Point force, torque; ///< on the wall, about its position
 };
 
 class MCA_API Automata {
@@ -68,6 +85,7 @@ public:
 	virtual void build(const std::vector<AutomatonStart>&, const std::vector<Material>&, const AutomataOptions&, const Automata* old) = 0;
 	virtual void computeForces() = 0;
 	virtual void integrate(double dt) = 0;
+	virtual double kick(double dt) const = 0; ///< time over which the forces of a step of dt act on velocities [s]
 	virtual double criticalStep() const = 0;
 	virtual int    stiffest() const = 0; ///< the automaton that limits the step
 
@@ -78,6 +96,13 @@ public:
 	virtual void setDamping(int id, const Triple& b) = 0;
 	virtual void set(int id, const AutomatonChange&) = 0;
 	virtual void moved() = 0;
+	/// Rigid bodies that automata touch from the next pushWalls() on; contacts go on by the numbers.
+	virtual void setWalls(const std::vector<WallStart>&) = 0;
+	/// Puts the forces of the walls, which are at these places in the order of setWalls(), on the automata for the next integrate() and returns theirs.
+	/// level: where the plane of plane strain lies [m]. Throws Error where somebody is too deep in a wall.
+	virtual const std::vector<WallPush>& pushWalls(const std::vector<WallPlace>&, double level) = 0;
+	virtual std::vector<WallTouch> wallTouches() const = 0; ///< what a saved state keeps of it
+	virtual void                   setWallTouches(const std::vector<WallTouch>&) = 0;
 	virtual void searchAnew() = 0;
 
 	virtual bool           holds(int id) const = 0;

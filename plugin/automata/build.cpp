@@ -36,6 +36,7 @@ namespace {
 		if (any(a.freeR) && !(a.inertia > 0)) refuse("inertia " + number(a.inertia) + " kg m must be above zero, or block the rotation.");
 		if (!(a.weight > 0 && a.weight <= 2)) refuse("weight " + number(a.weight) + " must be in (0, 2].");
 		if (!(a.eqps >= 0 && std::isfinite(a.eqps))) refuse("plastic strain " + number(a.eqps) + " must be finite and not negative.");
+		if (!(a.damage >= 0 && std::isfinite(a.damage))) refuse("damage " + number(a.damage) + " must be finite and not negative.");
 		if (!(a.strength > 0)) refuse("strength factor " + number(a.strength) + " must be above zero.");
 		if (a.material < 0 || size_t(a.material) >= nMaterials) refuse("unknown material number " + std::to_string(a.material) + ".");
 		if (a.triangles < 0 || a.triangles > nLinks)
@@ -72,6 +73,7 @@ void Solver::makeBlocks(const std::vector<Automaton>& in)
 	const size_t n = source.size();
 	S.eachArray([&](auto& v, Presence p) { v.assign(p == Presence::always ? n : 0, {}); });
 	if (std::any_of(S.materials.begin(), S.materials.end(), [](const Material& m) { return m.eos.heats(); })) S.heat.assign(n, 0.);
+	if (std::any_of(S.materials.begin(), S.materials.end(), [](const Material& m) { return m.fracture.damage.active(); })) S.damage.assign(n, 0.);
 	int32_t maxId = -1;
 	for (auto& a : in)
 		maxId = std::max(maxId, a.id);
@@ -99,6 +101,7 @@ void Solver::makeBlocks(const std::vector<Automaton>& in)
 		for (int c = 0; c < turns; c++) turnPlane(S.perInertia, c)[i] = turnComponent(a.freeR, c) ? 1. / a.inertia : 0.;
 		S.id[i] = a.id, S.group[i] = a.group;
 		if (a.temperature > 0) S.temperature[i] = a.temperature;
+		if (!S.damage.empty()) S.damage[i] = a.damage;
 		S.cell[i] *= a.weight;
 	}
 }

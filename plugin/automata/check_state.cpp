@@ -112,10 +112,11 @@ namespace {
 		const size_t n = S.size();
 		const_cast<Store&>(S).eachArray(
 			[&](auto& v, Presence p) { need(v.size() == n || (p == Presence::whenUsed && v.empty()), "the length of an array"); });
-		bool heats = false;
-		for (const Material& m : S.materials) heats |= m.eos.heats();
+		bool heats = false, damages = false;
+		for (const Material& m : S.materials) heats |= m.eos.heats(), damages |= m.fracture.damage.active();
 		const size_t given = turnPlane(S.outsideTorque, 0).size();
-		need(S.heat.empty() != heats && sized(S.outside, given) && sized(S.damp, S.damp.size()), "the length of an array");
+		need(S.heat.empty() != heats && S.damage.empty() != damages, "the length of an array");
+		need(sized(S.outside, given) && sized(S.damp, S.damp.size()), "the length of an array");
 		need(allOf(finite, S.position, S.velocity, S.omega, S.angle, S.rest, S.factor, S.inertia), "a position or velocity");
 		need(allOf(positive, S.mass, S.diameter, S.cell, S.invN, S.strength, S.weight), "a mass or size");
 		need(allOf(notNegative, S.perMass, S.perInertia, S.damp), "a mass or damping");
@@ -126,7 +127,7 @@ namespace {
 		need(allOf(finite, S.dTheta, S.P, S.mean, S.viscous, S.h, S.temperature, S.criterion, S.heat, S.force, S.torque, S.outside, S.outsideTorque)
 		             && stressesFinite(S),
 		     "a stress or force");
-		need(positive(S.J) && notNegative(S.eqps), "a volume or strain");
+		need(positive(S.J) && allOf(notNegative, S.eqps, S.damage), "a volume, strain or damage");
 	}
 
 	void checkLinks(const Store& S)

@@ -11,6 +11,7 @@ void Solver::addForce(size_t i, Vec<double> force, Turn<double> torque)
 {
 	Store& S = store;
 	if (S.outside.empty()) S.outside.resize(S.size()), S.outsideTorque.resize(S.size());
+	pushed.resize(S.blocks.size()), pushed[i / blockSize] = 1;
 	S.outside.add(i, force), addTurn(S.outsideTorque, i, torque);
 	if (!isZero(force) || !isZero(torque)) {
 		if (!S.blocks[i / blockSize].moving) topologyChanged = true;
@@ -20,7 +21,12 @@ void Solver::addForce(size_t i, Vec<double> force, Turn<double> torque)
 
 void Solver::clearForces()
 {
-	eachPlane([](auto& v) { std::fill(v.begin(), v.end(), 0.); }, store.outside, store.outsideTorque);
+	for (size_t b = 0; b < pushed.size(); b++) {
+		if (!pushed[b]) continue;
+		const auto first = std::ptrdiff_t(b * blockSize);
+		eachPlane([&](auto& v) { std::fill(v.begin() + first, v.begin() + first + blockSize, 0.); }, store.outside, store.outsideTorque);
+		pushed[b] = 0;
+	}
 }
 
 void Solver::setDamping(size_t i, Vec<double> b)

@@ -39,6 +39,7 @@
 	F(strength, double, always, "strength", "factor on the fracture criteria [-]") \
 	F(criterion, double, always, "", "largest criterion / its limit [-]; a pair breaks at a mean of 1") \
 	F(heat, double, whenUsed, "", "internal energy per mass, where a law heats [J/kg]") \
+	F(damage, double, whenUsed, "damage", "of plastic flow, where some material has a damage model (11e) [-]") \
 	V(force, always, shown, "of the last computeForces() [N/m]", MCA_COMPONENTS("fx", "fy", "fz")) \
 	MCA_TURN(F, V, torque, always, "", hidden, "torque of it [N]") \
 	V(outside, whenUsed, hidden, "force from outside [N/m]", MCA_COMPONENTS("outsideX", "outsideY", "outsideZ")) \

@@ -119,6 +119,7 @@ void Solver::inheritState(const Solver& old)
 		MCA_DEVIATORS(MCA_INHERIT)
 #undef MCA_INHERIT
 		if (!S.heat.empty() && !O.heat.empty()) S.heat[i] = O.heat[o];
+		if (!S.damage.empty() && !O.damage.empty()) S.damage[i] = O.damage[o];
 		bool same = trianglesIn(S.flags[i]) == trianglesIn(O.flags[o]);
 		for (int k = 0; k < nLinks; k++) {
 			const bool before = (O.flags[o] >> k) & 1, now = (S.flags[i] >> k) & 1;

@@ -27,13 +27,15 @@ namespace {
 			to[l]          = damping ? (free - b * v[l]) / (1. + b) : free;
 		}
 	}
-	template <class Kicked> void kickBlock(const Store& S, size_t base, double kick, Kicked& to)
+	/// pushed: forces from outside act on somebody in it.
+	template <class Kicked> void kickBlock(const Store& S, size_t base, double kick, bool pushed, Kicked& to)
 	{
 		const auto given = [&](const std::vector<double>& v) { return v.empty() ? nullptr : v.data() + base; };
+		const auto outer = [&](const std::vector<double>& v) { return pushed ? v.data() + base : nullptr; };
 		for (int c = 0; c < dim; c++)
-			kickLanes(&S.velocity[c][base], &S.force[c][base], given(S.outside[c]), given(S.damp[c]), &S.perMass[c][base], kick, to.velocity[c]);
+			kickLanes(&S.velocity[c][base], &S.force[c][base], outer(S.outside[c]), given(S.damp[c]), &S.perMass[c][base], kick, to.velocity[c]);
 		for (int c = 0; c < turns; c++)
-			kickLanes(&turnPlane(S.omega, c)[base], &turnPlane(S.torque, c)[base], given(turnPlane(S.outsideTorque, c)), nullptr,
+			kickLanes(&turnPlane(S.omega, c)[base], &turnPlane(S.torque, c)[base], outer(turnPlane(S.outsideTorque, c)), nullptr,
 			          &turnPlane(S.perInertia, c)[base], kick, to.omega[c]);
 	}
 	/// One direction of the drift: new velocities v, and positions x by them; returns the largest.
@@ -48,15 +50,18 @@ namespace {
 		}
 		return most;
 	}
-	/// Returns whether anything moves.
-	template <class Kicked> bool driftBlock(Store& S, size_t base, double dt, const Kicked& to)
+	/// Largest component of a velocity [m/s], and of a spin [rad/s].
+	struct Fastest {
+		double velocity = 0, spin = 0;
+	};
+	template <class Kicked> Fastest driftBlock(Store& S, size_t base, double dt, const Kicked& to)
 	{
-		double most = 0;
+		Fastest most;
 		for (int c = 0; c < turns; c++)
-			most = max(most, driftLanes(to.omega[c], dt, &turnPlane(S.omega, c)[base], &turnPlane(S.angle, c)[base]));
+			most.spin = max(most.spin, driftLanes(to.omega[c], dt, &turnPlane(S.omega, c)[base], &turnPlane(S.angle, c)[base]));
 		for (int c = 0; c < dim; c++)
-			most = max(most, driftLanes(to.velocity[c], dt, &S.velocity[c][base], &S.position[c][base]));
-		return most > 0;
+			most.velocity = max(most.velocity, driftLanes(to.velocity[c], dt, &S.velocity[c][base], &S.position[c][base]));
+		return most;
 	}
 }
 
@@ -81,7 +86,6 @@ struct Solver::Kicked {
 void Solver::checkForces()
 {
 	const Store& S = store;
-	const bool   ext   = !S.outside.empty();
 	const auto   force = S.force.planes(), given = S.outside.planes();
 	for (int32_t b : awake)
 		results[b].bad = -1;
@@ -90,7 +94,7 @@ void Solver::checkForces()
 		const size_t base = b * blockSize;
 		for (int l = 0; l < blockSize; l++)
 			bad += finite(force.at(base + l), turnAt(S.torque, base + l)) ? 0 : 1;
-		for (int l = 0; ext && l < blockSize; l++)
+		for (int l = 0; isPushed(b) && l < blockSize; l++)
 			bad += finite(given.at(base + l), turnAt(S.outsideTorque, base + l)) ? 0 : 1;
 		if (bad) results[b].bad = int64_t(base);
 	});
@@ -197,9 +201,11 @@ void Solver::integrate(double dt)
 	if (options.account) stepWorks.assign(store.blocks.size(), {});
 	eachAwake([&](size_t b) {
 		Kicked to;
-		kickBlock(store, b * blockSize, span, to);
+		kickBlock(store, b * blockSize, span, isPushed(b), to);
 		if (options.account) bookBlock(b, span, after, to);
-		if (driftBlock(store, b * blockSize, dt, to)) store.blocks[b].moving = true;
+		const Fastest most = driftBlock(store, b * blockSize, dt, to);
+		if (most.velocity > 0 || most.spin > 0) store.blocks[b].moving = true;
+		if (!travelled.empty()) travelled[b] += most.velocity * dt;
 	});
 	if (options.account) bookStep(span, after);
 	lastDt = lastMove = dt;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Radial returns of a block, for the passes over stresses.
 #pragma once
+#include "../kernels/automaton/fracture.hpp"
 #include "view.hpp"
 
 namespace mca::automata {
@@ -10,6 +11,23 @@ struct Returns {
 	alignas(64) double trial[blockSize], scale[blockSize], flow[blockSize];
 	Return             of(int l) const { return { scale[l], flow[l] }; }
 };
+/// (11e) of all, and what it makes of their criteria; sigma: Mises stresses after the return. The largest criterion.
+inline double growDamage(const BlockView& V, const Returns& R, const double* sigma, double dt)
+{
+	const DuctileDamage c     = V.material.fracture.damage;
+	const Yield         yield = V.material.yield;
+	double              worst = 0, flow = 0;
+	for (int l = 0; l < blockSize; l++) flow = max(flow, R.flow[l]);
+#pragma omp simd
+	for (int l = 0; l < (flow > 0. ? blockSize : 0); l++)
+		V.damage[l] += damageGrowth(c, yield, R.flow[l], V.mean[l], sigma[l], V.temperature[l], dt);
+#pragma omp simd reduction(max : worst)
+	for (int l = 0; l < blockSize; l++) {
+		V.criterion[l] = criterion(V.criterion[l], V.damage[l], V.strength[l]);
+		worst          = max(worst, V.flags[l] & linkBits ? V.criterion[l] : 0.);
+	}
+	return worst;
+}
 /// Radial return of a dear law for eight automata, if any of them is above its static yield stress; else they stay elastic.
 template <YieldKind kind> void returnWhereAbove(const BlockView& V, double threeG, double dt, int g, Returns& to)
 {

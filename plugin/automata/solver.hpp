@@ -17,7 +17,7 @@ struct Automaton {
 	Vec<double> position {}, velocity {};
 	Turn<double> omega {}, angle {};
 	double  mass = 0, inertia = 0, diameter = 0, weight = 1, strength = 1;
-	double  eqps = 0;
+	double  eqps = 0, damage = 0;
 	double  temperature = 0; ///< [K]; 0: the material's reference temperature
 	int32_t material = 0, id = 0, group = 0;
 	Vec<bool>   free  = everyWay(); ///< per direction: moves as forces say
@@ -66,6 +66,10 @@ public:
 	/// freeSpin: its rotation stays its own. Returns its place t in the order of the calls.
 	size_t tie(size_t i, bool freeSpin = false);
 	void   setTiedVelocity(size_t i, Vec<double> velocity, Turn<double> omega);
+	/// Length of the last move [s]; 0: none, or others have moved automata since.
+	double sinceLast() const { return lastMove; }
+	/// Ways of the blocks, largest component of anyone, summed over the steps [m]; kept where somebody has given it their number.
+	std::vector<double> travelled;
 	/// Time [s] over which the forces of a step of dt act on the velocities: half of the step before and half of this one.
 	double kick(double dt) const { return lastDt > 0 ? 0.5 * (lastDt + dt) : dt; }
 	/// Place of the caller's number in the arrays, or -1. Changes with every sort.
@@ -173,6 +177,7 @@ private:
 	void  viscousHeats();
 	void  bookPasses();
 	void  limitStep();
+	bool  isPushed(size_t block) const { return !pushed.empty() && pushed[block]; }
 	void  checkResults(double nearestContact, size_t closest);
 	// integrate()
 	struct ForceShares {
@@ -237,5 +242,6 @@ private:
 	bool                     topologyChanged = true; ///< the list of awake blocks is out of date
 	bool                     searchDue       = false;
 	Account                  sums;
+	std::vector<char>        pushed; ///< of the blocks: holds forces from outside
 };
 }

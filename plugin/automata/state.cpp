@@ -91,6 +91,7 @@ namespace {
 			else f.number(v);
 		}
 		void operator()(YieldKind& v) { f.choice(v, yieldKinds); }
+		void operator()(DamageKind& v) { f.choice(v, damageKinds); }
 		void operator()(EosKind& v) { f.choice(v, eosKinds); }
 		void operator()(VolumeRule& v) { f.choice(v, 3); }
 		void operator()(Block& b)
@@ -189,6 +190,7 @@ void Solver::load(const std::string& bytes)
 	if (!fresh.searched.empty()) fresh.nearCells.cells = Cells(fresh.searched, nearCell * fresh.store.largestDiameter()), fresh.readyWatch();
 	fresh.store.packAll();
 	*this = std::move(fresh);
+	pushed.assign(store.outside.empty() ? 0 : store.blocks.size(), 1);
 	for (size_t c = 0; c < contacts.size(); c++) {
 		const int32_t a = contacts.owner[c] / blockSize, b = contacts.other[c] / blockSize;
 		if (a < b) contactAdjacent.push_back({ a, b });
@@ -257,5 +259,6 @@ void Solver::sortInSpace()
 	makeAdjacency();
 	classify();
 	counters.sorts++;
+	pushed.assign(S.outside.empty() ? 0 : S.blocks.size(), 1);
 }
 }

@@ -21,7 +21,8 @@ struct BlockBase {
 		     *diameterOfAll = store.diameter.data(), *node = store.node.data(), *pushOfAll = store.push.data();
 	double *J = at(store.J), *dTheta = at(store.dTheta), *P = at(store.P), *mean = at(store.mean), *viscous = at(store.viscous), *h = at(store.h),
 	       *factor = at(store.factor), *rest = at(store.rest), *eqps = at(store.eqps), *temperature = at(store.temperature),
-	       *heat = at(store.heat), *criterion = at(store.criterion), *record = at(store.node, nodeSize), *push = at(store.push, pushSize);
+	       *heat = at(store.heat), *damage = at(store.damage), *criterion = at(store.criterion), *record = at(store.node, nodeSize),
+	       *push = at(store.push, pushSize);
 	const Flags *  flags = at(store.flags), *flagsOfAll = store.flags.data();
 	const int32_t* neighbour = at(store.neighbour, nLinks);
 	BlockBase(Store& S, size_t b)

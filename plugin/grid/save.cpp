@@ -58,6 +58,7 @@ namespace {
 	}
 	template <class A> void io(A& a, YieldKind& v) { choice(a, v, yieldKinds); }
 	template <class A> void io(A& a, EosKind& v) { choice(a, v, eosKinds); }
+	template <class A> void io(A& a, DamageKind& v) { choice(a, v, damageKinds); }
 	template <class A> void io(A& a, LoadKind& v) { choice(a, v, 3); }
 	/// no more room is made than what follows can fill
 	template <class A, class C> void resize(A& a, C& v, size_t bytesEach)

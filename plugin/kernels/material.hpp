@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // All constants of one material, as automata and grid use them.
 #pragma once
+#include "damage.hpp"
 #include "error.hpp"
 #include "eos.hpp"
-#include "yield.hpp"
 #include <array>
 #include <cmath>
 #include <sstream>
@@ -24,7 +24,11 @@ struct Fracture {
 	double pairStress    = std::numeric_limits<double>::infinity(); ///< tensile normal stress of the pair [Pa]
 	double mises         = std::numeric_limits<double>::infinity(); ///< sigma_eq [Pa], or sigma_c of the two-parameter criterion
 	double ratio         = 1;                                       ///< a = sigma_c/sigma_t of the two-parameter criterion; 1 = Mises [-]
-	bool   active() const { return std::isfinite(strain) || std::isfinite(spall) || std::isfinite(pairStress) || std::isfinite(mises); }
+	DuctileDamage damage;
+	bool          active() const
+	{
+		return std::isfinite(strain) || std::isfinite(spall) || std::isfinite(pairStress) || std::isfinite(mises) || damage.active();
+	}
 };
 
 struct Material {
@@ -41,7 +45,7 @@ struct Material {
 	double cS() const { return std::sqrt(G / eos.rho0); }
 };
 
-/// f(constant) for every constant, in a fixed order: numbers, EosKind and YieldKind. What saves or compares materials goes by this list.
+/// f(constant) for every constant, in a fixed order: numbers, EosKind, YieldKind and DamageKind. What saves or compares materials goes by this list.
 template <class M, class F> void eachConstant(M& m, F&& f)
 {
 	f(m.eos.rho0), f(m.eos.c0), f(m.eos.kind), f(m.eos.clampAt), f(m.G);
@@ -49,6 +53,7 @@ template <class M, class F> void eachConstant(M& m, F&& f)
 	f(m.yield.kind), f(m.yield.referenceTemperature), f(m.yield.heatPerWork);
 	eachFlowConstant(m.yield, f);
 	f(m.fracture.strain), f(m.fracture.spall), f(m.fracture.pairStress), f(m.fracture.mises), f(m.fracture.ratio);
+	f(m.fracture.damage.kind), f(m.fracture.damage.D1), f(m.fracture.damage.D2), f(m.fracture.damage.D3), f(m.fracture.damage.D4), f(m.fracture.damage.D5);
 	f(m.viscosity.linear), f(m.viscosity.quadratic), f(m.friction);
 }
 
@@ -65,6 +70,16 @@ template <class In, class Need> void checkChosen(const Eos& c, In&& in, Need&& n
 template <class In, class Need> void checkChosen(const Yield& c, In&& in, Need&& need)
 {
 	switch (c.kind) { MCA_FLOW_LAWS(MCA_FLOW_USES) }
+}
+
+template <class In, class Need> void validate(const DuctileDamage& c, const Yield& y, In&& in, Need&& need)
+{
+	in(laws::finite, "damageD1 [-]", c.D1), in(laws::notNegative, "damageD2 [-]", c.D2), in(laws::finite, "damageD3 [-]", c.D3);
+	need(c.D4 >= -0.01 && c.D4 < laws::huge, "damageD4 [-]", c.D4, "at least -0.01 and finite", "the factor of the rate must stay above zero");
+	need(c.D5 > -1 && c.D5 < laws::huge, "damageD5 [-]", c.D5, "above -1 and finite");
+	if (!c.active()) return;
+	need(c.D1 + c.D2 > 0, "damageD1 + damageD2 [-]", c.D1 + c.D2, "above zero", "the fracture strain without mean stress; damageModel 'none': no damage");
+	need(c.D5 == 0 || y.meltTemperature > y.referenceTemperature, "meltTemperature [K]", y.meltTemperature, "above referenceTemperature (damageD5)");
 }
 
 /// Throws mca::Error naming the first constant that is out of range. name: how the user calls the material.
@@ -103,6 +118,7 @@ inline void validate(const Material& m, const std::string& name)
 	in(laws::aboveZero.with("infinite: never"), "pairStrength [Pa]", m.fracture.pairStress);
 	in(laws::aboveZero.with("infinite: never"), "fractureStress [Pa]", m.fracture.mises);
 	need(m.fracture.ratio >= 1 && m.fracture.ratio < laws::huge, "strengthRatio [-]", m.fracture.ratio, "finite and at least 1");
+	validate(m.fracture.damage, y, in, need);
 	in(laws::notNegative, "viscosityLinear [-]", m.viscosity.linear);
 	in(laws::notNegative, "viscosityQuadratic [-]", m.viscosity.quadratic);
 	need(m.friction >= 0 && m.friction <= 1300, "friction [-]", m.friction, "from 0 to 1300 (an angle below pi/2)");

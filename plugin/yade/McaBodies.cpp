@@ -120,6 +120,16 @@ void checkNumbers(const Scene& scene)
 				+ "; the saved scene is damaged or was edited.");
 }
 
+void checkDamage(const Body& b, const McaState& s)
+{
+	if (!(s.damage >= 0 && s.damage <= 1e6)) refuseBody(b, "state.damage = " + numberText(s.damage) + " must be from 0 to 1e6.");
+	if (s.damage != 0 && static_cast<const McaMat&>(*b.material).damageModel == "none")
+		refuseBody(
+			b,
+			"state.damage = " + numberText(s.damage)
+				+ " has no meaning: the damageModel of its material is 'none'. Set damageModel='johnsonCook', or damage to 0.");
+}
+
 McaBodies::McaBodies(const Scene& scene, int seed, int dimension)
 {
 	checkNumbers(scene);
@@ -171,6 +181,7 @@ void McaBodies::add(const Body& b, int seed, int dimension)
 	if (ms->strength == 0) ms->strength = drawStrength(*m, seed, b.id);
 	a.strength  = ms->strength;
 	a.eqps      = ms->plasticStrain;
+	a.damage    = ms->damage;
 	a.triangles = ms->triangles;
 	if (ms->mirrors < 0 || ms->mirrors > 7)
 		throw mca::Error("body " + std::to_string(b.id) + ": state.mirrors = " + std::to_string(ms->mirrors) + " must be from 0 to 7.");

@@ -24,6 +24,8 @@ bool leavesPlane(const State& s);
 /// Throws mca::Error unless McaEngine can take over the motion of a body: finite, in the plane when that is the dimension.
 void   checkMotion(const Body& b, int dimension);
 string numberText(Real v);
+/// Throws mca::Error when state.damage is out of range, or given where the material has no damage model.
+void checkDamage(const Body& b, const McaState& s);
 
 /// All automata of the scene, ascending ids. Strengths that are zero are drawn and stored in the states.
 struct McaBodies {

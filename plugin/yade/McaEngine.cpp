@@ -122,7 +122,7 @@ void McaEngine::computeForces(Scene* scene)
 {
 	const bool check = looked || !solver;
 	ensureBuilt(scene);
-	if (check) checkScene(scene);
+	if (check) checkScene(scene), gatherWalls(scene);
 	looked = false; // a refusal above is asked again by the next step
 	if (!forcesReady) { // not twice when something has stopped the step half-way: stresses would grow twice
 		stale = true;
@@ -130,6 +130,7 @@ void McaEngine::computeForces(Scene* scene)
 	}
 	forcesReady = true;
 	readExternal(scene);
+	pushWalls(scene->dt);
 }
 
 void McaEngine::forget()
@@ -137,7 +138,7 @@ void McaEngine::forget()
 	locked([&] {
 		if (!solver || solver->counters().steps > 0) return;
 		solver.reset();
-		bodies.clear(), same.clear(), known.clear(), order.clear();
+		letGo(bodies, same, known, walls), order.clear(), wallStarts.clear();
 		home.reset();
 		forcesReady = false;
 	});
@@ -182,6 +183,7 @@ void McaEngine::step()
 			const Real limit = dtFactor * solver->criticalStep();
 			scene->dt        = solver->counters().steps > 0 && scene->dt > 0 ? std::min(limit, 1.1 * scene->dt) : limit;
 		}
+		if (!walls.empty()) checkStep(scene), tellWalls(scene);
 		integrate(scene);
 		finish(scene);
 	});

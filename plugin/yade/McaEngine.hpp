@@ -65,8 +65,11 @@ public:
 		"read the present state; bodies are those of the last look. "
 		"Masses are density times the volume that an automaton stands for, in plane strain per 1 m of thickness (packings.addBodies sets them); so are "
 		"all forces, energies and momenta. "
-		"Bodies with different masks do not link at the start; they meet as contacts. Blocked degrees of freedom keep their velocity. Walls, boxes, "
-		"facets and clumps are refused (the law in YADE's own loop has them).",
+		"Bodies with different masks do not link at the start; they meet as contacts. Blocked degrees of freedom keep their velocity. "
+		"Automata touch every wall, box, facet and sphere of another material, alone or in a clump, whose mask is not 0 (12b): a penalty of the "
+		"automaton's moduli with the smaller friction of both. What such a body gets goes to O.forces, per m of thickness in plane strain, and "
+		"whatever YADE has moves it (NewtonIntegrator with a mask that no automaton has, TranslationEngine before it). With readForces and an "
+		"InteractionLoop that loop has them. Clumps of automata, other shapes, and rigid bodies in a scene coupled to a grid are refused.",
 		((string, volumeRule, "affine", , "'affine' (default: J = det F of the links, exact in any homogeneous deformation), 'inversePower' (density "
 		    "from the mean of (d/r)^2) or 'meanDistance' (as published; its lattice buckles under strong plastic compression); in space 'affine' only. "
 		    "Read when bodies are gathered; a later change is refused"))
@@ -97,6 +100,8 @@ public:
 		((vector<int>, order, , Attr::hidden, "body ids, ascending"))
 		((vector<Vector3r>, viscous, , Attr::hidden, "of setViscous(), kept for the next time that bodies are gathered: id [-] and coefficients "
 		    "along x and y [kg/(m s)]"))
+		((vector<int>, wallPairs, , Attr::hidden, "automaton and wall of each contact with one that has held a shear force, for the file"))
+		((vector<Vector3r>, wallShears, , Attr::hidden, "that force on the automaton [N/m, in space N]"))
 		((vector<Real>, viscousZ, , Attr::hidden, "coefficients along z of the same [kg/s]"))
 		,
 		timingDeltas = shared_ptr<TimingDeltas>(new TimingDeltas);
@@ -107,7 +112,8 @@ public:
 		    "background; at any other time that happens by itself. Raises RuntimeError when its scene is gone.")
 		.def("field", &McaEngine::fieldByName, (py::arg("name")), "Copy of one quantity of all automata now, in the order of `ids`, numpy (N,): 'x', "
 		    "'y' [m], 'vx', 'vy' [m/s], 'omega' [rad/s], 'angle' [rad], 'mass' [kg/m], 'pressure' [Pa], 'volumeRatio' [-], 'equivalentStress' [Pa], "
-		    "'plasticStrain' [-], 'temperature' [K], 'stressZZ' [Pa], 'fx', 'fy' [N/m], 'links' [-], 'brokenLinks' [-], 'strength' [-], 'diameter' "
+		    "'plasticStrain' [-], 'damage' [-] (0 where no material has a damage model), 'temperature' [K], 'stressZZ' [Pa], 'fx', 'fy' [N/m], "
+		    "'links' [-], 'brokenLinks' [-], 'strength' [-], 'diameter' "
 		    "[m], 'weight' [-], 'material' [-]; in space 'z', 'vz', 'fz' as well, 'omegaX', 'omegaY', 'omegaZ' for 'omega', no 'angle', "
 		    "'deviatorXX', 'deviatorYY', 'deviatorZZ', 'deviatorYZ', 'deviatorZX', 'deviatorXY' [Pa] for 'stressZZ', and mass and "
 		    "forces are in kg and N. What a script has changed in the bodies counts already. Raises RuntimeError for another "
@@ -143,7 +149,7 @@ private:
 		Vector3r    pos = Vector3r::Zero(), vel = Vector3r::Zero(), angVel = Vector3r::Zero();
 		Quaternionr ori = Quaternionr::Identity();
 		Vector3r    angle = Vector3r::Constant(NaN); ///< of ori, as the solver has it
-		Real        pressure = 0, volumeRatio = 1, equivalentStress = 0, plasticStrain = 0, temperature = 0, stressZZ = 0, dissipated = 0;
+		Real        pressure = 0, volumeRatio = 1, equivalentStress = 0, plasticStrain = 0, damage = 0, temperature = 0, stressZZ = 0, dissipated = 0;
 		int         links = 0, brokenLinks = 0;
 		// read only
 		Real     mass = 0, inertia = 0, radius = 0, strength = 0;
@@ -151,6 +157,12 @@ private:
 		unsigned blocked = 0;
 	};
 	shared_ptr<mca::Automata>    solver;
+	vector<shared_ptr<Body>>     walls;  ///< rigid bodies that automata touch
+	vector<mca::WallStart>       wallStarts;
+	bool                         nobodySums = false; ///< no engine of the scene sums the forces of its threads
+	vector<mca::WallPlace>       wallPlaces; ///< in this step
+	vector<Quaternionr>          wallTurns;  ///< their orientations
+	const vector<mca::WallPush>* wallPushes = nullptr;
 	boost::weak_ptr<Scene>       home;   ///< scene of its bodies
 	vector<shared_ptr<Body>>     bodies; ///< of order
 	vector<Same>                 same;   ///< of order
@@ -176,6 +188,14 @@ private:
 	template <class F> void dropDampers(F&& goes);
 	void              bind(Scene* scene);
 	void              adoptChanges(Scene* scene);
+	bool              wallsAreOthers(const Scene&) const;
+	static bool       mayBeTouched(const Body& b);
+	mca::WallStart    wallOf(const Scene&, const Body&) const;
+	void              gatherWalls(Scene* scene);
+	void              pushWalls(Real lastStep);
+	void              tellWalls(Scene* scene);
+	void              saveWalls();
+	void              loadWalls(mca::Automata& to) const;
 	vector<Change>    changes(bool& rebuild);
 	Change            changeOf(size_t q, bool& rebuild);
 	bool              untouched(size_t q) const;

@@ -26,7 +26,7 @@ namespace {
 						+ ".");
 		};
 		within("plasticStrain", s.plasticStrain, 0, 1e6, ""), within("temperature", s.temperature, 0, 1e9, " K"),
-			within("strength", s.strength, 0, 1e9, "");
+			within("strength", s.strength, 0, 1e9, ""), checkDamage(b, s);
 		if (s.brokenLinks != 0 || s.pressure != 0 || s.volumeRatio != 1 || s.equivalentStress != 0 || s.stressZZ != 0 || s.dissipated != 0)
 			refuseBody(
 				b,
@@ -68,7 +68,7 @@ void McaEngine::settleIn(Scene* scene)
 	if (!loaded) {
 		if (!bodies.empty()) viscous.clear(), viscousZ.clear(); // dampers of bodies that are gone; those given before the first step stay
 		solver.reset();
-		bodies.clear(), same.clear(), known.clear(), order.clear();
+		letGo(bodies, same, known, walls), order.clear(), wallStarts.clear();
 		lost  = -1;
 		stale = forcesReady = false, looked = true, warnedEmpty = warnedTension = wrote = false, lastWritten = -1;
 		std::fill(std::begin(energyIndex), std::end(energyIndex), -1);
@@ -133,7 +133,8 @@ void McaEngine::takeResults(size_t q)
 	was.pos = place(a, s), was.vel = vector3(a.velocity), was.angVel = vector3(a.spin);
 	was.angle = vector3(a.angle), was.ori = orientationOf(was.angle, dimension);
 	was.blocked = ~0u; // to be compared with what the solver has
-	was.pressure = a.pressure, was.volumeRatio = a.volumeRatio, was.plasticStrain = a.plasticStrain, was.temperature = a.temperature;
+	was.pressure = a.pressure, was.volumeRatio = a.volumeRatio, was.plasticStrain = a.plasticStrain, was.damage = a.damage,
+	was.temperature = a.temperature;
 	was.stressZZ = a.stressZZ, was.dissipated = a.dissipated.value_or(0.);
 	was.equivalentStress = s.equivalentStress, was.links = s.links, was.brokenLinks = s.brokenLinks; // follow from the rest
 }
@@ -145,13 +146,7 @@ void McaEngine::checkBodies(const Scene& scene, int dimensionNow) const
 		if (!b) continue;
 		const bool automaton = b->material && castTo<McaMat>(b->material.get()) && b->shape && castTo<Sphere>(b->shape.get());
 		if (!automaton) {
-			const string shape = b->shape ? b->shape->getClassName() : "";
-			if (!readForces && b->groupMask != 0 && (shape == "Wall" || shape == "Box" || shape == "Facet"))
-				throw mca::Error(
-					"McaEngine: body " + std::to_string(b->id) + " is a " + shape
-					+ ", which automata would pass through. Use the law in YADE's own loop (scenes.law2Engines), hold automata by "
-				          "blockedDOFs, or give a body "
-					  "that is only looked at mask=0.");
+			if (!wallsAreOthers(scene) && mayBeTouched(*b)) wallOf(scene, *b); // refuses what they cannot touch
 			continue;
 		}
 		if (b->clumpId != Body::ID_NONE)
@@ -207,12 +202,14 @@ void McaEngine::gather(Scene* scene)
 		if (a.isNew) newIds.insert(a.id);
 	if (solver) // the dampers of bodies that are gone go with them
 		dropDampers([&](int id) { return !fresh->holds(id) || newIds.count(id); });
+	if (goesOn) fresh->setWallTouches(solver->wallTouches());
+	wallStarts.clear();
 	solver      = fresh;
 	dimension   = dimensionNow;
 	order       = now.ids;
-	bodies      = list;
+	bodies.swap(list);
 	forcesReady = false;
-	known.clear();
+	letGo(list, known, same);
 	for (const auto* m : now.known)
 		for (const auto& b : bodies)
 			if (b->material.get() == m) {

@@ -13,7 +13,7 @@ namespace yade {
 /// What a script has changed in one body.
 struct McaEngine::Change {
 	size_t place; ///< in order
-	bool   position, velocity, spin, angle, plasticStrain, temperature, strength, mask, blocked;
+	bool   position, velocity, spin, angle, plasticStrain, damage, temperature, strength, mask, blocked;
 	bool   motion() const { return position || velocity || spin; }
 };
 
@@ -61,6 +61,7 @@ namespace {
 	}
 	void refuseEnds(const Body& b, const char* name, int now, int was)
 	{
+		if (now == was) return;
 		refuseBody(
 			b,
 			string("state.") + name + " = " + std::to_string(now) + " was changed (from " + std::to_string(was)
@@ -80,7 +81,7 @@ bool McaEngine::untouched(size_t q) const
 	if (dimension == 3) d |= unlike(s.inertia[0], was.inertia) | unlike(s.inertia[1], was.inertia);
 	d |= unlike(s.mass, was.mass) | unlike(s.inertia[2], was.inertia) | unlike(s.blockedDOFs, was.blocked) | unlike(b.groupMask, was.mask);
 	d |= unlike(s.pressure, was.pressure) | unlike(s.volumeRatio, was.volumeRatio) | unlike(s.equivalentStress, was.equivalentStress)
-		| unlike(s.plasticStrain, was.plasticStrain);
+		| unlike(s.plasticStrain, was.plasticStrain) | unlike(s.damage, was.damage);
 	d |= unlike(s.temperature, was.temperature) | unlike(s.stressZZ, was.stressZZ) | unlike(s.dissipated, was.dissipated)
 		| unlike(s.strength, was.strength);
 	d |= unlike(s.links, was.links) | unlike(s.brokenLinks, was.brokenLinks) | unlike(s.triangles, was.triangles) | unlike(s.mirrors, was.mirrors);
@@ -129,7 +130,7 @@ vector<McaEngine::Change> McaEngine::changes(bool& rebuild)
 		}
 		if (!bodies[q] || untouched(q)) continue;
 		const Change c = changeOf(q, rebuild);
-		if (c.motion() || c.angle || c.plasticStrain || c.temperature || c.strength || c.mask || c.blocked) list.push_back(c);
+		if (c.motion() || c.angle || c.plasticStrain || c.damage || c.temperature || c.strength || c.mask || c.blocked) list.push_back(c);
 	}
 	return list;
 }
@@ -150,7 +151,7 @@ McaEngine::Change McaEngine::changeOf(size_t q, bool& rebuild)
 	c.velocity      = s.vel != was.vel;
 	c.spin          = s.angVel != was.angVel;
 	c.angle         = !((s.se3.orientation.coeffs() - was.ori.coeffs()).norm() < 1e-12); // a quaternion is normalised anew on its way through a file
-	c.plasticStrain = differs(s.plasticStrain, was.plasticStrain);
+	c.plasticStrain = differs(s.plasticStrain, was.plasticStrain), c.damage = differs(s.damage, was.damage);
 	c.temperature   = differs(s.temperature, was.temperature);
 	c.strength      = differs(s.strength, was.strength);
 	c.mask          = b.groupMask != was.mask;
@@ -165,12 +166,12 @@ McaEngine::Change McaEngine::changeOf(size_t q, bool& rebuild)
 		refuseBody(b, "it is tied to a grid, which moves it; its position and velocity cannot be set. Set those of the grid before the first step.");
 	if (c.plasticStrain && !(s.plasticStrain >= 0 && s.plasticStrain <= 1e6))
 		refuseBody(b, "state.plasticStrain = " + numberText(s.plasticStrain) + " must be from 0 to 1e6.");
+	if (c.damage) checkDamage(b, s);
 	if (c.temperature && !(s.temperature > 0 && s.temperature <= 1e9))
 		refuseBody(b, "state.temperature = " + numberText(s.temperature) + " K must be above 0 and at most 1e9.");
 	if (c.strength && !(s.strength > 0 && s.strength <= 1e9))
 		refuseBody(b, "state.strength = " + numberText(s.strength) + " must be above 0 and at most 1e9.");
-	if (s.triangles != was.triangles) refuseEnds(b, "triangles", s.triangles, was.triangles);
-	if (s.mirrors != was.mirrors) refuseEnds(b, "mirrors", s.mirrors, was.mirrors);
+	refuseEnds(b, "triangles", s.triangles, was.triangles), refuseEnds(b, "mirrors", s.mirrors, was.mirrors);
 	checkMirrors(b, s, was.pos);
 	const Real radius = static_cast<const Sphere*>(b.shape.get())->radius;
 	if (differs(s.mass, was.mass) || otherInertia(s, was.inertia, dimension) || differs(radius, was.radius))
@@ -213,6 +214,7 @@ void McaEngine::apply(const vector<Change>& list)
 		if (c.spin) now.angVel = s.angVel, to.spin = triple(s.angVel);
 		if (c.angle) now.ori = s.se3.orientation, now.angle.setConstant(NaN), to.angle = triple(angleOf(now.ori, dimension));
 		if (c.plasticStrain) to.plasticStrain = now.plasticStrain = s.plasticStrain;
+		if (c.damage) to.damage = now.damage = s.damage;
 		if (c.temperature) to.temperature = now.temperature = s.temperature;
 		if (c.strength) to.strength = now.strength = s.strength;
 		if (c.mask) to.group = now.mask = b.groupMask;
@@ -252,13 +254,14 @@ bool McaEngine::writeBody(State& s, Same& was, const mca::AutomatonNow& now) con
 	auto*        m    = castTo<McaState>(&s);
 	bool         kept = s.se3.position == was.pos && s.vel == was.vel && s.angVel == was.angVel;
 	kept &= unlike(s.se3.orientation.coeffs(), was.ori.coeffs()) == 0 || (s.se3.orientation.coeffs() - was.ori.coeffs()).norm() < 1e-12;
-	if (m) kept &= !differs(m->plasticStrain, was.plasticStrain) && !differs(m->temperature, was.temperature);
+	if (m) kept &= !differs(m->plasticStrain, was.plasticStrain) && !differs(m->damage, was.damage) && !differs(m->temperature, was.temperature);
 	was.pos = place(now, s), was.vel = vector3(now.velocity), was.angVel = vector3(now.spin);
 	if (const Vector3r angle = vector3(now.angle); angle != was.angle) was.angle = angle, was.ori = orientationOf(angle, dimension);
 	s.se3.position = was.pos, s.se3.orientation = was.ori, s.vel = was.vel, s.angVel = was.angVel;
 	if (!m) return kept;
 	m->pressure = was.pressure = now.pressure, m->volumeRatio = was.volumeRatio = now.volumeRatio;
-	m->plasticStrain = was.plasticStrain = now.plasticStrain, m->temperature = was.temperature = now.temperature;
+	m->plasticStrain = was.plasticStrain = now.plasticStrain, m->damage = was.damage = now.damage;
+	m->temperature = was.temperature = now.temperature;
 	m->stressZZ = was.stressZZ = now.stressZZ, m->equivalentStress = was.equivalentStress = now.equivalentStress;
 	m->links = was.links = now.links, m->brokenLinks = was.brokenLinks = now.brokenLinks;
 	if (now.dissipated) m->dissipated = *now.dissipated;

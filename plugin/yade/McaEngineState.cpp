@@ -55,6 +55,7 @@ void McaEngine::preSave(McaEngine&)
 		if (!solver) return;
 		const string bytes = solver->save();
 		state.put(bytes.data(), bytes.size());
+		saveWalls();
 	});
 }
 
@@ -82,9 +83,9 @@ void McaEngine::postLoad(McaEngine&)
 	if (dimension != 2 && dimension != 3) throw mca::Error("McaEngine: dimension in the file is neither 2 nor 3; the file is damaged or was edited.");
 	shared_ptr<mca::Automata> fresh(mca::automataIn(dimension));
 	fresh->load(string(bytes.begin(), bytes.end()));
-	checkLoaded(*fresh, order, viscous, viscousZ);
+	checkLoaded(*fresh, order, viscous, viscousZ), loadWalls(*fresh);
 	solver = fresh;
-	home.reset(), bodies.clear(), same.clear(), known.clear();
+	home.reset(), letGo(bodies, same, known, walls), wallStarts.clear();
 	looked = true, stale = false;
 	state.clear();
 }

@@ -15,6 +15,15 @@ inline void letPythonSeeTheLoop()
 	PyGILState_Release(state);
 }
 
+/// Lets go of bodies and the like, under Python's lock: what a script has made takes a Python object along.
+template <class... List> void letGo(List&... lists)
+{
+	if (!Py_IsInitialized()) return (lists.clear(), ...);
+	const PyGILState_STATE state = PyGILState_Ensure();
+	(lists.clear(), ...);
+	PyGILState_Release(state);
+}
+
 /// Runs the step of an engine; what it throws goes on when YADE is ready to see it. Not inside a lock that Python calls take as well.
 template <class F> void guarded(F&& step)
 {

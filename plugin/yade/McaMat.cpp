@@ -49,6 +49,7 @@ mca::Material McaMat::toMaterial() const
 	}
 	m.fracture.strain = fractureStrain, m.fracture.spall = spallStrength, m.fracture.pairStress = pairStrength, m.fracture.mises = fractureStress,
 	m.fracture.ratio = strengthRatio;
+	m.fracture.damage = { mca::DamageKind(pick("damageModel", damageModel, { "none", "johnsonCook" })), damageD1, damageD2, damageD3, damageD4, damageD5 };
 	m.viscosity = { viscosityLinear, viscosityQuadratic };
 	m.friction  = std::tan(frictionAngle);
 	mca::validate(m, name);

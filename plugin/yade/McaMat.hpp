@@ -58,6 +58,8 @@ public:
 		((Real, equivalentStress, 0, , "Mises stress [Pa]; output"))
 		((Real, plasticStrain, 0, , "equivalent plastic strain [-]; read at every look (at the start as initial hardening), by :yref:`McaLaw` in "
 		    "every step"))
+		((Real, damage, 0, , "of plastic flow by the material's damageModel (11e) [-]; a pair breaks at a mean of 1 (times the strength); read at "
+		    "every look (at the start as damage from before), by :yref:`McaLaw` in every step; other than 0 without a damageModel is refused"))
 		((Real, temperature, 298, , "temperature, for flow stresses that depend on it [K]; material.newAssocState() sets the reference temperature; "
 		    "read at every look, by :yref:`McaLaw` in every step"))
 		((Real, stressZZ, 0, , "deviatoric stress along z, in plane strain out of the plane [Pa]; output"))
@@ -138,6 +140,14 @@ public:
 		    "two-parameter criterion 0.5 (a+1) sigma_eq + 1.5 (a-1) sigma_mean [Pa]; read at every look, by a grid when the block is added"))
 		((Real, strengthRatio, 1, , "a = compressive / tensile strength of the two-parameter criterion [-]; 1: Mises; read at every look, by a grid "
 		    "when the block is added"))
+		((string, damageModel, "none", , "damage by plastic flow: 'none' or 'johnsonCook' (Johnson and Cook 1985): a pair unlinks where the plastic "
+		    "strain over the fracture strain at the triaxiality, rate and temperature it came at sums up to 1, (11e); read at every look; a grid "
+		    "does not use it"))
+		((Real, damageD1, 0, , "D1 of (11e) [-]; read at every look"))
+		((Real, damageD2, 0, , "D2 of (11e), of the exponential of the triaxiality [-]; read at every look"))
+		((Real, damageD3, 0, , "D3 of (11e), negative where tension shortens the strain [-]; read at every look"))
+		((Real, damageD4, 0, , "D4 of (11e), of the logarithm of the strain rate over referenceRate [-]; read at every look"))
+		((Real, damageD5, 0, , "D5 of (11e), of the temperature over its way to melting [-]; read at every look"))
 		((Real, strengthSpread, 0, , "relative standard deviation of the strengths from automaton to automaton [-]; read when strengths are drawn, "
 		    "that is when a body is taken over for the first time"))
 		((string, strengthDistribution, "uniform", , "'uniform', 'normal' (cut at 3 deviations) or 'weibull'; read when strengths are drawn, that is "

@@ -7,6 +7,7 @@
 #include <core/Scene.hpp>
 #include <kernels/automaton/contact.hpp>
 #include <kernels/automaton/links.hpp>
+#include <kernels/wall.hpp>
 #include <mutex>
 #include <pkg/common/Sphere.hpp>
 #include <pkg/dem/ScGeom.hpp>
@@ -102,11 +103,11 @@ string McaPhys::takeError()
 
 void McaPhys::setWall(const McaMat& m, Real otherAngle, Real diameter, int dimension)
 {
-	const Real K = m.density * sqr(m.bulkSoundSpeed), width = McaPairLaw::in(dimension).width(diameter);
+	const mca::WallStiffness k(m.density * sqr(m.bulkSoundSpeed), m.shearModulus, McaPairLaw::in(dimension).width(diameter), diameter);
 	wall         = true;
 	d            = diameter;
-	kn           = (K + m.shearModulus * (4. / 3.)) * width * 2. / d;
-	ks           = m.shearModulus * width * 2. / d;
+	kn           = k.normal;
+	ks           = k.shear;
 	friction     = std::tan(std::min(m.frictionAngle, otherAngle));
 }
 
@@ -161,8 +162,7 @@ namespace {
 		p.normalForce      = p.kn * std::max(g.penetrationDepth, Real(0)) * g.normal;
 		g.rotate(p.shearForce);
 		p.shearForce -= p.ks * g.shearInc;
-		const Real most = p.friction * p.normalForce.norm(), now = p.shearForce.norm();
-		if (now > most) p.shearForce *= most / now;
+		p.shearForce *= mca::frictionShare(p.shearForce.norm(), p.friction * p.normalForce.norm());
 		if (!touches) {
 			p.shearForce = Vector3r::Zero();
 			return false;

@@ -24,7 +24,7 @@ import numpy as np
 
 from ._arguments import LARGEST, numbersOfAnyShape
 
-__all__ = ['Material', 'MaterialError', 'names', 'get', 'mcaMat', 'MCAMAT_ATTRIBUTES', 'YIELD_MODELS', 'EOS_MODELS']
+__all__ = ['Material', 'MaterialError', 'names', 'get', 'mcaMat', 'MCAMAT_ATTRIBUTES', 'YIELD_MODELS', 'EOS_MODELS', 'DAMAGE_MODELS']
 
 DATA = Path(__file__).with_name('data') / 'materials.csv'
 STRENGTH = Path(__file__).with_name('data') / 'law_constants.csv'
@@ -32,6 +32,7 @@ STRENGTH = Path(__file__).with_name('data') / 'law_constants.csv'
 LAWS = json.loads(Path(__file__).with_name('data').joinpath('laws.json').read_text())
 EOS_MODELS = tuple(law['name'] for law in LAWS['eos'])
 YIELD_MODELS = tuple(law['name'] for law in LAWS['yieldModel'])
+DAMAGE_MODELS = ('none', 'johnsonCook')
 DISTRIBUTIONS = ('uniform', 'normal', 'weibull')
 #: plastic strain up to which the straight line of ``linearHardening`` is fitted to the full curve [-]
 FIT_STRAIN = 0.5
@@ -68,6 +69,12 @@ class Material(_LawConstants):
 	pairStrength: float = math.inf  #: tensile normal stress of a pair at which it unlinks [Pa]
 	fractureStress: float = math.inf  #: Mises stress at which a pair unlinks; see strengthRatio [Pa]
 	strengthRatio: float = 1.0  #: a = sigma_c/sigma_t of the two-parameter criterion 0.5 (a+1) sigma_eq + 1.5 (a-1) sigma_m; 1: Mises [-]
+	damageModel: str = 'none'  #: one of DAMAGE_MODELS; the library fills D1 ... D5 where it has them, whatever the model
+	damageD1: float = 0.0  #: fracture strain of Johnson and Cook (1985): (D1 + D2 exp(D3 sigma_m/sigma_eq)) (1 + D4 ln rate) (1 + D5 T*) [-]
+	damageD2: float = 0.0
+	damageD3: float = 0.0
+	damageD4: float = 0.0
+	damageD5: float = 0.0
 	strengthSpread: float = 0.0  #: relative standard deviation of the strengths from automaton to automaton [-]
 	strengthDistribution: str = 'uniform'  #: one of DISTRIBUTIONS
 	frictionAngle: float = math.atan(0.1)  #: dry metal on metal at high sliding speed, coefficient of the order of 0.1 (Bowden & Freitag 1958) [rad]
@@ -76,7 +83,6 @@ class Material(_LawConstants):
 	# not attributes of McaMat
 	staticBulkModulus: float = math.nan  #: from another source, for information only [Pa]
 	johnsonCook: tuple = None  #: (A [Pa], B [Pa], n, C, m) or None
-	johnsonCookDamage: tuple = None  #: (D1 ... D5) or None [-]
 	steinbergGuinan: tuple = None  #: (Y0 [Pa], beta, n, Ymax [Pa]) or None
 	lawConstants: dict = field(default_factory=dict)  #: {law: {constant: value in SI units}} of laws whose constants stand in law_constants.csv
 	minimumPressure: float = 0.0  #: shock pressure from which on the adiabat holds [Pa]
@@ -151,20 +157,25 @@ class Material(_LawConstants):
 	def johnsonCookFractureStrain(self, triaxiality, rate=1.0, temperature=298.0):
 		"""Plastic strain at fracture by Johnson & Cook (1985) [-]; triaxiality = mean stress / Mises stress, tension positive.
 
-		For choosing `fractureStrain`; raises MaterialError when the library has no D1 ... D5 for the metal.
+		What damageModel='johnsonCook' goes by, and for choosing `fractureStrain`; raises MaterialError when the metal has no D1 ... D5 (damageD1 ...).
 		"""
-		if self.johnsonCookDamage is None:
+		d1, d2, d3, d4, d5 = (getattr(self, name) for name in _DAMAGE)
+		if not d1 + d2 > 0:
 			raise MaterialError("material '%s' has no Johnson-Cook fracture constants D1 ... D5" % self.name)
-		d1, d2, d3, d4, d5 = self.johnsonCookDamage
 		triaxiality, rate = numbersOfAnyShape('triaxiality', triaxiality, MaterialError), numbersOfAnyShape('rate', rate, MaterialError, 0)
 		temperature = numbersOfAnyShape('temperature', temperature, MaterialError, 0)
 		t = np.clip((temperature - self.referenceTemperature) / (self.meltTemperature - self.referenceTemperature), 0, 1)
-		return (d1 + d2 * np.exp(d3 * triaxiality)) * (1 + d4 * np.log(np.maximum(rate / self.referenceRate, 1.0))) * (1 + d5 * t)
+		return np.maximum((d1 + d2 * np.exp(d3 * triaxiality)) * (1 + d4 * np.log(np.maximum(rate / self.referenceRate, 1.0))) * (1 + d5 * t), LEAST_FRACTURE_STRAIN)
 
 
 #: attributes of McaMat that mcaMat() sets
 MCAMAT_ATTRIBUTES = tuple(f.name for f in fields(Material))[:[f.name for f in fields(Material)].index('viscosityQuadratic') + 1]
 MCAMAT_ATTRIBUTES = tuple(name for name in MCAMAT_ATTRIBUTES if name != 'name')
+
+
+_DAMAGE = tuple('damageD%d' % i for i in range(1, 6))
+#: where the constants give less, or nothing: strong tension [-]
+LEAST_FRACTURE_STRAIN = 1e-6
 
 
 def _number(row, key, unit=1.0, default=None):
@@ -173,14 +184,14 @@ def _number(row, key, unit=1.0, default=None):
 
 def _record(row):
 	jc = tuple(_number(row, k, u) for k, u in (('JC_A_MPa', 1e6), ('JC_B_MPa', 1e6), ('JC_n', 1), ('JC_C', 1), ('JC_m', 1)))
-	damage = tuple(_number(row, 'D%d' % i) for i in range(1, 6))
+	damage = {name: _number(row, name[-2:]) for name in _DAMAGE}
 	sg = tuple(_number(row, k, u) for k, u in (('Y0_GPa', 1e9), ('SG_beta', 1), ('SG_n', 1), ('SG_Ymax_GPa', 1e9)))
 	m = Material(
 	        name=row['name'], density=_number(row, 'rho_kgm3'), bulkSoundSpeed=_number(row, 'c0_ms'), hugoniotSlope=_number(row, 's'),
 	        gruneisen=_number(row, 'gamma0', default=0.0), shearModulus=_number(row, 'G_GPa', 1e9, math.nan),
 	        meltTemperature=_number(row, 'Tm_K', default=math.inf), heatCapacity=_number(row, 'cp', default=0.0),
 	        staticBulkModulus=_number(row, 'K_GPa', 1e9, math.nan), johnsonCook=None if None in jc else jc,
-	        johnsonCookDamage=None if None in damage else damage, steinbergGuinan=None if None in sg else sg,
+	        **({} if None in damage.values() else damage), steinbergGuinan=None if None in sg else sg,
 	        minimumPressure=_number(row, 'Pmin_GPa', 1e9, 0.0), eosSource=row['eos_src'], strengthSource=row['str_src'])
 	m.lawConstants.update(_lawConstants().get(m.name, {}))
 	best = 'johnsonCook' if m.johnsonCook else 'linearHardening' if m.steinbergGuinan else 'elastic'
@@ -303,9 +314,16 @@ def _check(m):
 	if m.frictionAngle >= 0.5 * math.pi: refuse('frictionAngle', 'from 0 to below pi/2')
 	if m.taylorQuinney > 1: refuse('taylorQuinney', 'from 0 to 1')
 	if m.strengthSpread >= 0.5: refuse('strengthSpread', 'from 0 to below 0.5')
-	for k, allowed in (('eos', EOS_MODELS), ('yieldModel', YIELD_MODELS), ('strengthDistribution', DISTRIBUTIONS)):
+	for k, allowed in (('eos', EOS_MODELS), ('yieldModel', YIELD_MODELS), ('damageModel', DAMAGE_MODELS), ('strengthDistribution', DISTRIBUTIONS)):
 		if getattr(m, k) not in allowed:
 			refuse(k, 'one of ' + ', '.join(allowed))
+	for k in _DAMAGE:
+		if math.isnan(getattr(m, k)): refuse(k, 'finite')
+	if not m.damageD2 >= 0: refuse('damageD2', '0 or above')
+	if not m.damageD4 >= -0.01: refuse('damageD4', '-0.01 or above')
+	if not m.damageD5 > -1: refuse('damageD5', 'above -1')
+	if m.damageModel != 'none' and not m.damageD1 + m.damageD2 > 0:
+		raise MaterialError("material '%s' has no constants of damageModel '%s' in the library; give damageD1 ... damageD5 (damageD1 + damageD2 above 0)" % (m.name, m.damageModel))
 	if not m.strengthRatio >= 1: refuse('strengthRatio', '1 or above (compression strength / tensile strength)')
 
 

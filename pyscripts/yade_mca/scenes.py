@@ -173,13 +173,15 @@ def checkImpact(thickness, spacing, speed, mode, rodLength, rodDiameter, rod, pl
 
 
 def penetration(thickness=25e-3, spacing=1e-3, speed=1520., mode='coupled', ends=None, rodLength=100e-3, rodDiameter=10e-3, rod='WHA_JC', plate='4340',
-                automataWidth=80e-3, plateWidth=120e-3, fractureStrain=1.0, spallStrength=SPALL, strengthSpread=0.05, friction=None, eos='shockAdiabat',
-                yieldModel=None, viscosity=1., seed=1, dtFactor=0.5, account=True, angle=0., obliquity=0., dimension=2, quarter=True, engineOptions=None):
+                automataWidth=80e-3, plateWidth=120e-3, fractureStrain=None, spallStrength=SPALL, strengthSpread=0.05, friction=None, eos='shockAdiabat',
+                yieldModel=None, viscosity=1., seed=1, dtFactor=0.5, account=True, angle=0., obliquity=0., dimension=2, quarter=True, engineOptions=None,
+                damageModel='none'):
 	"""A rod falls on the upper face of a plate: the main job. Parts 'rod', 'plate'; impact direction (sin obliquity, -cos obliquity).
 
 	thickness [m], spacing [m], speed [m/s]; mode and ends as in tiedPlate() (ends None: 'fixed' when coupled, 'viscous' with automata only)
 	rod, plate     names or records of the library, or McaMat (then taken as they are)
-	fractureStrain plastic strain at which pairs unlink [-], of both
+	fractureStrain plastic strain at which pairs unlink [-], of both; None: 1, infinite with a damageModel
+	damageModel    'johnsonCook': pairs of both unlink by the fracture strain of Johnson and Cook, (11e); the materials must have its constants
 	spallStrength  tensile pressure at which pairs of rod and plate unlink [Pa]: tungsten alloy W-7Ni-3Fe 3.8 GPa (Zurek & Gray 1991, J. Phys. IV 1,
 	               C3-631), quenched and tempered steel 3 GPa, within the range of such steels in Antoun et al. 2003 (Spall Fracture, Springer)
 	strengthSpread relative scatter of both from automaton to automaton, drawn with `seed`
@@ -195,7 +197,7 @@ def penetration(thickness=25e-3, spacing=1e-3, speed=1520., mode='coupled', ends
 	quarter        in space: the quarter x, z >= 0 with planes of symmetry
 	Time 0 is the moment of contact: the rod's foremost automata just touch the plate. Raises SceneError (a ValueError) for values out of range.
 	"""
-	from .materials import Material, get, mcaMat
+	from .materials import DAMAGE_MODELS, Material, get, mcaMat
 	if not isinstance(quarter, bool): raise SceneError('quarter must be True or False; got %r' % (quarter, ))
 	checkImpact(thickness, spacing, speed, mode, rodLength, rodDiameter, rod, plate, automataWidth, plateWidth, angle, obliquity, dimension)
 	if dimension == 3 and (mode != 'mca' or angle or obliquity):
@@ -203,6 +205,8 @@ def penetration(thickness=25e-3, spacing=1e-3, speed=1520., mode='coupled', ends
 	within('strengthSpread', strengthSpread, 0., 1.)
 	within('viscosity', viscosity, 0., 100.)
 	within('seed', seed, 0, 2**31 - 1)
+	oneOf('damageModel', damageModel, DAMAGE_MODELS)
+	if fractureStrain is None: fractureStrain = 1. if damageModel == 'none' else math.inf
 	within('fractureStrain', fractureStrain, 0., math.inf, openLow=True)
 	if friction is not None:
 		within('friction', friction, 0., 10.)
@@ -216,7 +220,7 @@ def penetration(thickness=25e-3, spacing=1e-3, speed=1520., mode='coupled', ends
 		if not isinstance(x, (str, Material)):
 			return x
 		m = get(x, yieldModel=yieldModel)
-		constants = dict(fractureStrain=fractureStrain, spallStrength=spall, strengthSpread=strengthSpread, eos=eos, viscosityLinear=viscosity * m.viscosityLinear,
+		constants = dict(fractureStrain=fractureStrain, damageModel=damageModel, spallStrength=spall, strengthSpread=strengthSpread, eos=eos, viscosityLinear=viscosity * m.viscosityLinear,
 		                 viscosityQuadratic=viscosity * m.viscosityQuadratic)
 		return mcaMat(m, **dict(constants, **({} if friction is None else dict(frictionAngle=math.atan(friction)))))
 

@@ -27,7 +27,9 @@ JOHNSON_COOK = dict(yieldModel='johnsonCook', yieldStress=0.79e9, hardeningModul
                     meltTemperature=1793., heatCapacity=477., eos='mieGruneisen', gruneisen=1.7)
 
 
-RULES = [('affine', {}), ('inversePower', {}), ('meanDistance', {}), ('affine', JOHNSON_COOK),
+DAMAGE = dict(JOHNSON_COOK, fractureStrain=float('inf'), damageModel='johnsonCook', damageD1=0.02, damageD2=0.12, damageD3=-1.5, damageD4=0.002, damageD5=0.6)
+
+RULES = [('affine', {}), ('inversePower', {}), ('meanDistance', {}), ('affine', JOHNSON_COOK), ('affine', DAMAGE),
          ('affine', dict(spallStrength=float('inf'), pairStrength=1.5e9, viscosityLinear=0., viscosityQuadratic=0.))]
 
 

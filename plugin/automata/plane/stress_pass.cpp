@@ -138,18 +138,19 @@ namespace {
 		for (int l = 0; account && l < blockSize; l++)
 			V.record[nodeSize * l + viscousShareAt] = acting[l] != 0. ? V.viscous[l] / acting[l] : 0.;
 	}
-	double fractureCriteria(const BlockView& V, const Sums& sums, const PlaneReturns& R)
+	double fractureCriteria(const BlockView& V, const Sums& sums, const PlaneReturns& R, double dt)
 	{
-		const Criteria c(V.material.fracture);
-		double         worst = 0;
+		const Criteria     c(V.material.fracture);
+		double             worst = 0;
+		alignas(64) double sigma[blockSize];
 #pragma omp simd reduction(max : worst)
 		for (int l = 0; l < blockSize; l++) {
-			const double one =
-				criterion(c, V.eqps[l], V.mean[l], equivalentStressAfter(R.scale[l], sums.square[l] * V.invN[l], V.szz[l]), V.strength[l]);
+			sigma[l]         = equivalentStressAfter(R.scale[l], sums.square[l] * V.invN[l], V.szz[l]);
+			const double one = criterion(c, V.eqps[l], V.mean[l], sigma[l], V.strength[l]);
 			V.criterion[l]   = one;
 			worst            = max(worst, V.flags[l] & linkBits ? one : 0.);
 		}
-		return worst;
+		return V.material.fracture.damage.active() ? growDamage(V, R, sigma, dt) : worst;
 	}
 
 	template <YieldKind kind, bool intact, bool mixed, bool account>
@@ -174,7 +175,7 @@ namespace {
 			meanPressures(V, account);
 		else
 			std::copy(V.P, V.P + blockSize, V.mean);
-		if (V.material.fracture.active()) out.criterion = fractureCriteria(V, sums, R);
+		if (V.material.fracture.active()) out.criterion = fractureCriteria(V, sums, R, dt);
 	}
 }
 

@@ -215,17 +215,19 @@ namespace {
 			if (account) scatter(V.shares + sharesSize * g, sharesSize, volume, J * load(V.mean + g), J * load(V.viscous + g));
 		}
 	}
-	double fractureCriteria(const BlockView& V, const Sums& sums, const Returns& R)
+	double fractureCriteria(const BlockView& V, const Sums& sums, const Returns& R, double dt)
 	{
-		const Criteria c(V.material.fracture);
-		double         worst = 0;
+		const Criteria     c(V.material.fracture);
+		double             worst = 0;
+		alignas(64) double sigma[blockSize];
 #pragma omp simd reduction(max : worst)
 		for (int l = 0; l < blockSize; l++) {
-			const double one = criterion(c, V.eqps[l], V.mean[l], R.scale[l] * equivalentStress(sums.square[l] * V.invN[l]), V.strength[l]);
+			sigma[l]         = R.scale[l] * equivalentStress(sums.square[l] * V.invN[l]);
+			const double one = criterion(c, V.eqps[l], V.mean[l], sigma[l], V.strength[l]);
 			V.criterion[l]   = one;
 			worst            = max(worst, V.flags[l] & linkBits ? one : 0.);
 		}
-		return worst;
+		return V.material.fracture.damage.active() ? growDamage(V, R, sigma, dt) : worst;
 	}
 
 	template <YieldKind kind, bool intact, bool mixed, bool account>
@@ -244,7 +246,7 @@ namespace {
 		scaleLinks(V, factor), scaleDeviators(V, R);
 		for (int l = 0; l < blockSize; l++) sums.sides.set(l, sums.sides.at(l) * factor[l]);
 		makePushes(V, sums.sides, account);
-		if (V.material.fracture.active()) out.criterion = fractureCriteria(V, sums, R);
+		if (V.material.fracture.active()) out.criterion = fractureCriteria(V, sums, R, dt);
 	}
 }
 

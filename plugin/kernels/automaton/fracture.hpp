@@ -24,6 +24,9 @@ MCA_INLINE double criterion(const Criteria& c, double eqps, double P, double equ
 	return max(one, fma(c.ofMises, equivalentStress, -c.ofPressure * P) * c.perMises) / strength;
 }
 
+/// The same where flow damages, too: damage 1 is the limit.
+MCA_INLINE double criterion(double ofOthers, double damage, double strength) { return max(ofOthers, damage / strength); }
+
 /// One end of a link that is tested.
 struct LinkEnd {
 	double criterion, s, J, P, strength; ///< s: J times the normal stress of this side [Pa]

@@ -109,6 +109,8 @@ void Loop::checkState(const Row& r) const
 		       "); where a body ends is found when it is taken in. Set it back.");
 	need("strength", m.strength, m.strength > 0 && m.strength <= 1e9, "above 0 and at most 1e9");
 	need("plasticStrain", m.plasticStrain, m.plasticStrain >= 0 && m.plasticStrain <= 1e6, "from 0 to 1e6");
+	need("damage", m.damage, m.damage >= 0 && m.damage <= 1e6, "from 0 to 1e6");
+	need("damage", m.damage, m.damage == 0 || r.material->fracture.damage.active(), "0: its material has no damageModel");
 	need("temperature", m.temperature, m.temperature >= 0 && m.temperature <= 1e9, "from 0 to 1e9 [K]");
 	need("dissipated", m.dissipated, m.dissipated >= 0 && m.dissipated < 1e30, "not negative and below 1e30 [J/kg]");
 	need("pressure", m.pressure, std::isfinite(m.pressure), "finite");

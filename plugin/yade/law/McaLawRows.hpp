@@ -100,6 +100,7 @@ private:
 	Trial                      trial(const Row&, const Side&, Stress old, const Apart&) const;
 	Deviator                   deviatorOf(const Row&) const;
 	Real                       deviatorEnergyAt(const Row&) const;
+	void                       fractureCriterion(Row&, Real dEqps, Real dt) const;
 	void                       finishPressure(Row&) const;
 	void                       contactFriction(Row&, const Side&, Stress before, Real scale);
 	[[noreturn]] void          overlapError(const Row&, const Side&, Real ratio) const;

@@ -175,8 +175,18 @@ void Loop::stress(Row& r)
 		contactFriction(r, contacts[size_t(c)], held[size_t(c - r.firstContact)], scale);
 	finishPressure(r);
 	m.equivalentStress = deviator.equivalentAfter(m, back.scale, sums.square * l.invN);
-	if (material.fracture.active())
-		l.criterion = mca::criterion(mca::Criteria(material.fracture), m.plasticStrain, m.pressure, m.equivalentStress, m.strength);
+	if (material.fracture.active()) fractureCriterion(r, back.dEqps, dt);
+}
+
+/// (11b), (11e)
+void Loop::fractureCriterion(Row& r, Real dEqps, Real dt) const
+{
+	McaState&            m = *r.m;
+	const mca::Fracture& f = r.material->fracture;
+	r.l->criterion = mca::criterion(mca::Criteria(f), m.plasticStrain, m.pressure, m.equivalentStress, m.strength);
+	if (!f.damage.active()) return;
+	m.damage += mca::damageGrowth(f.damage, r.material->yield, dEqps, m.pressure, m.equivalentStress, m.temperature, dt);
+	r.l->criterion = mca::criterion(r.l->criterion, m.damage, m.strength);
 }
 
 /// (5f), (S6), and the push of the affine rule with it and with the viscous pressure.

@@ -3,7 +3,7 @@
 import argparse
 import math
 
-from ...materials import EOS_MODELS, YIELD_MODELS
+from ...materials import DAMAGE_MODELS, EOS_MODELS, YIELD_MODELS
 from ..cli import positive
 from ..registry import UsageError
 
@@ -59,7 +59,8 @@ SCENE = {
         'obliquity': (0., dict(type=degrees(75), metavar='DEG', help='between the flight of the rod and the normal of the plate')),
         'yield-model': (None, dict(choices=list(YIELD_MODELS), help='of both materials (default: Johnson-Cook)')),
         'eos': ('shockAdiabat', dict(choices=list(EOS_MODELS), help='equation of state of both materials')),
-        'fracture-strain': (1., dict(type=positive(float), metavar='X', help='plastic strain at which pairs unlink')),
+        'fracture-strain': (None, dict(type=positive(float), metavar='X', help='plastic strain at which pairs unlink (default: 1, with a damage model never)')),
+        'damage': ('none', dict(choices=list(DAMAGE_MODELS), help='by plastic flow, of both materials; johnsonCook: fracture strain by triaxiality, rate and temperature')),
         'spall': (1., dict(type=positive(float), metavar='X', help='factor on the tensile strengths, 3.8 GPa of the rod and 3.0 GPa of the plate')),
         'spread': (0.05, dict(type=fraction, metavar='X', help='relative scatter of the strengths')),
         'friction': (None, dict(type=fraction, metavar='X', help='coefficient between unlinked automata (default: 0.1)')),
@@ -126,7 +127,7 @@ def sceneOf(args):
 	"""Builds the scene of filled options."""
 	from ... import scenes
 	return scenes.penetration(
-	        **sizes(args), ends=args.ends, fractureStrain=args.fracture_strain,
+	        **sizes(args), ends=args.ends, fractureStrain=args.fracture_strain, damageModel=args.damage,
 	        spallStrength=(args.spall * scenes.SPALL[0], args.spall * scenes.SPALL[1]), strengthSpread=args.spread, friction=args.friction, eos=args.eos, yieldModel=args.yield_model, viscosity=args.viscosity, seed=args.seed,
 	        dtFactor=args.dt_factor, dimension=args.dimension, quarter=args.model == 'quarter', engineOptions=dict(volumeRule=args.volume_rule))
 
