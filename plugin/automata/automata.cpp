@@ -49,6 +49,7 @@ namespace {
 		int    stiffest() const override { return solver.store.id[solver.stiffestAutomaton()]; }
 
 		void addForce(int id, const Triple& force, const Triple& torque) override { solver.addForce(at(id), vectorOf(force), turnOf(torque)); }
+		void drive(int id, int axis, double velocity) override { solver.drive(at(id), axis, velocity); }
 		void addGravity(const Triple& acceleration) override
 		{
 			for (size_t i = 0; i < S.size(); i++)
@@ -118,6 +119,17 @@ namespace {
 			return b;
 		}
 		std::vector<std::pair<int32_t, int32_t>> links() const override { return solver.links(); }
+		BrokenLinks brokenLinks() const override
+		{
+			const auto& b = solver.broken;
+			BrokenLinks l;
+			l.time = b.time, l.first.assign(b.first.begin(), b.first.end()), l.second.assign(b.second.begin(), b.second.end());
+			l.cause.assign(b.cause.begin(), b.cause.end());
+			for (size_t q = 0; q < b.time.size(); q++)
+				l.middle.push_back(tripleOf(b.middle.at(q))), l.normal.push_back(tripleOf(b.normal.at(q)));
+			return l;
+		}
+		size_t cut(const std::vector<std::pair<int32_t, int32_t>>& pairs) override { return solver.cut(pairs); }
 		std::vector<double> quantity(const std::vector<int>& ids, const std::string& name, const std::string& call) const override;
 		Work work() const override
 		{

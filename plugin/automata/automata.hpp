@@ -59,6 +59,12 @@ struct AutomatonChange {
 	std::optional<Ways>    free, freeSpin;
 };
 
+/// Links that have broken, in the order in which they did.
+struct BrokenLinks {
+	std::vector<double> time;                 ///< of the solver [s]
+	std::vector<int>    first, second, cause; ///< the caller's numbers; BreakCause
+	std::vector<Triple> middle, normal;       ///< of the link [m]; unit vector from the first to the second
+};
 /// A rigid body beside the automata.
 struct WallStart {
 	int      id = 0;
@@ -90,6 +96,8 @@ public:
 	virtual int    stiffest() const = 0; ///< the automaton that limits the step
 
 	virtual void addForce(int id, const Triple& force, const Triple& torque) = 0;
+	/// Velocity along an axis, which must be blocked, for the next integrate() [m/s].
+	virtual void drive(int id, int axis, double velocity) = 0;
 	virtual void addGravity(const Triple& acceleration) = 0;
 	virtual void clearForces() = 0;
 	virtual bool hasForces() const = 0; ///< some have been added at some time
@@ -112,6 +120,8 @@ public:
 	virtual const std::vector<Material>& materials() const = 0;
 	virtual AccountOf<Triple, Triple>    account() const = 0;
 	virtual std::vector<std::pair<int32_t, int32_t>> links() const = 0;
+	virtual BrokenLinks                              brokenLinks() const = 0;
+	virtual size_t                                   cut(const std::vector<std::pair<int32_t, int32_t>>&) = 0;
 	/// One quantity of these automata. Throws Error that lists the names when there is none of this name, with `call` in it.
 	virtual std::vector<double> quantity(const std::vector<int>& ids, const std::string& name, const std::string& call) const = 0;
 	struct Work {

@@ -183,6 +183,18 @@ namespace {
 	}
 } // namespace
 
+/// Links that have broken, and those that shall.
+void Solver::checkBroken() const
+{
+	const auto&  b = broken;
+	const size_t n = b.time.size();
+	need(b.first.size() == n && b.second.size() == n && b.cause.size() == n && sized(b.middle, n) && sized(b.normal, n), "the length of the broken links");
+	need(allOf(finite, b.time, b.middle, b.normal), "a broken link");
+	for (size_t q = 0; q < n; q++) need(b.first[q] >= 0 && b.second[q] >= 0 && b.cause[q] >= 0 && b.cause[q] < breakCauses, "a broken link");
+	need(asked.size() % 2 == 0, "a link to be cut");
+	for (int32_t id : asked) need(indexOf(id) >= 0, "a link to be cut");
+}
+
 void Solver::checkState() const
 {
 	const Store& S = store;
@@ -202,6 +214,7 @@ void Solver::checkState() const
 		     "the result of a block");
 	checkArrays(S, stopped);
 	checkLinks(S);
+	checkBroken();
 	checkContacts(contacts, S, stopped, searchDue && options.contacts);
 	const bool used = contacts.size() > 0 && !(searchDue && options.contacts);
 	const auto sum  = [&](const Doubles& v, bool optional) {

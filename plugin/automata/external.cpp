@@ -29,6 +29,20 @@ void Solver::clearForces()
 	}
 }
 
+void Solver::drive(size_t i, int axis, double velocity)
+{
+	Store&       S = store;
+	const double before = S.velocity[axis][i];
+	const auto   who = "automaton " + std::to_string(S.id[i]);
+	if (S.flags[i] & tiedBit) throw Error(who + " is tied to a grid, which moves it; its velocity cannot be prescribed.");
+	if (S.perMass[axis][i] != 0.) throw Error(who + " has a prescribed velocity and is free to move in that direction; block it (blockedDOFs).");
+	if (velocity == before) return;
+	if (options.account)
+		sums.external += 0.5 * S.mass[i] * (velocity * velocity - before * before), sums.impulse[axis] += S.mass[i] * (velocity - before);
+	S.velocity[axis][i] = velocity;
+	if (!S.blocks[i / blockSize].moving) S.blocks[i / blockSize].moving = topologyChanged = true;
+}
+
 void Solver::setDamping(size_t i, Vec<double> b)
 {
 	Store& S = store;

@@ -16,14 +16,17 @@ double Solver::contactEnergyAt(size_t i, double Jc) const
 	return coldEnergy(store.materialOf(i), contactCell(store.diameter[i], store.cell[i] / part, 1.) * part, Jc);
 }
 
+LinkEnd Solver::linkEnd(size_t i, int k) const
+{
+	const Store& S = store;
+	const double normal = normalStressAt(S, i, k, S.between(i, size_t(S.neighbour[linkSlot(i, k)])));
+	return { S.criterion[i], normal, S.J[i], S.mean[i], S.strength[i] };
+}
+
 /// f(automaton, link) for the pairs that fulfil a criterion, until it returns true.
 template <class F> void Solver::eachBreaking(F&& f) const
 {
 	const Store& S   = store;
-	const auto   end = [&](size_t i, int k) {
-		const double normal = normalStressAt(S, i, k, S.between(i, size_t(S.neighbour[linkSlot(i, k)])));
-		return LinkEnd { S.criterion[i], normal, S.J[i], S.mean[i], S.strength[i] };
-	};
 	for (int32_t b : awake) {
 		const Material& m = S.materialOf(S.blocks[b]);
 		if (!m.fracture.active()) continue;
@@ -36,8 +39,8 @@ template <class F> void Solver::eachBreaking(F&& f) const
 			for (int k = 0; k < nLinks; k++) {
 				if (!holds(S.flags[i], k)) continue;
 				const size_t j = S.neighbour[linkSlot(i, k)];
-				if (mca::breaks(m.fracture, end(i, k), end(j, Lattice::opposite(k)), S.distance2(i, j), S.restDistance(i, j)) && f(i, k))
-					return;
+				const LinkEnd a = linkEnd(i, k), b = linkEnd(j, Lattice::opposite(k));
+				if (mca::breaks(m.fracture, a, b, S.distance2(i, j), S.restDistance(i, j)) && f(i, k)) return;
 			}
 		}
 	}
@@ -55,27 +58,84 @@ std::vector<int32_t> Solver::breakLinks()
 {
 	Store&                                   S = store;
 	std::vector<std::pair<int32_t, int32_t>> pairs; // (automaton, link)
+	std::vector<BreakCause>                  causes;
 	std::vector<int32_t>                     touched;
-	eachBreaking([&](size_t i, int k) {
-		pairs.push_back({ int32_t(i), k });
-		touched.push_back(int32_t(i)), touched.push_back(S.neighbour[linkSlot(i, k)]);
-		return false;
-	});
+	const auto                               add = [&](size_t i, int k, BreakCause cause) {
+                pairs.push_back({ int32_t(i), k }), causes.push_back(cause);
+                touched.push_back(int32_t(i)), touched.push_back(S.neighbour[linkSlot(i, k)]);
+	};
+	for (size_t q = 0; q < asked.size(); q += 2) {
+		const size_t i = size_t(place[size_t(asked[q])]);
+		if (const int k = linkOf(i, size_t(place[size_t(asked[q + 1])])); k >= 0) add(i, k, BreakCause::cut);
+	}
+	asked.clear();
+	if (counters.steps % breakPeriod == 0)
+		eachBreaking([&](size_t i, int k) {
+			add(i, k, causeAt(i, k));
+			return false;
+		});
 	std::sort(touched.begin(), touched.end());
 	touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
 	// the volume at the present positions, as all links measure it: the work of the last move must not be lost
 	std::vector<double> J;
 	for (int32_t i : touched)
 		J.push_back(S.factor[i] > 0. ? S.factor[i] * determinantNow(i) + S.rest[i] : S.J[i]);
-	for (auto [i, k] : pairs) {
+	for (size_t q = 0; q < pairs.size(); q++) {
+		const auto [i, k] = pairs[q];
 		const size_t j = S.neighbour[linkSlot(i, k)];
 		if (!holds(S.flags[i], k)) continue; // seen from the other side before
+		noteBreak(i, k, causes[q]);
 		unlink(i, k), unlink(j, Lattice::opposite(k));
 		counters.brokenLinks++;
 	}
 	for (size_t q = 0; q < touched.size(); q++)
 		keepVolume(touched[q], J[q]);
 	return touched;
+}
+
+size_t Solver::cut(const std::vector<std::pair<int32_t, int32_t>>& pairs)
+{
+	if (!options.contacts) throw Error("cut: contacts=False, and links break only where contacts can take their place.");
+	size_t hold = 0;
+	for (const auto& [a, b] : pairs) {
+		for (int32_t id : { a, b })
+			if (indexOf(id) < 0) throw Error("cut: body " + std::to_string(id) + " is no automaton of this engine.");
+		if (linkOf(size_t(indexOf(a)), size_t(indexOf(b))) < 0) continue;
+		asked.push_back(a), asked.push_back(b);
+		hold++;
+	}
+	return hold;
+}
+
+/// The link of automaton i that leads to j, -1: none that holds.
+int Solver::linkOf(size_t i, size_t j) const
+{
+	for (int k = 0; k < nLinks; k++)
+		if (holds(store.flags[i], k) && size_t(store.neighbour[linkSlot(i, k)]) == j) return k;
+	return -1;
+}
+
+BreakCause Solver::causeAt(size_t i, int k) const
+{
+	const Store& S = store;
+	const size_t j = size_t(S.neighbour[linkSlot(i, k)]);
+	const auto   apart = [&](size_t q) {
+		return CriteriaApart(
+			Criteria(S.materialOf(i).fracture), S.eqps[q], S.mean[q], equivalentStress(q), S.damage.empty() ? 0. : S.damage[q], S.strength[q]);
+	};
+	return mca::causeOf(linkEnd(i, k), linkEnd(j, Lattice::opposite(k)), apart(i), apart(j), S.distance2(i, j), S.restDistance(i, j));
+}
+
+void Solver::noteBreak(size_t i, int k, BreakCause cause)
+{
+	const Store&      S = store;
+	const size_t      j = size_t(S.neighbour[linkSlot(i, k)]), n = broken.time.size();
+	const bool        turn = S.id[j] < S.id[i]; // the smaller number first
+	const Vec<double> r = S.between(i, j), along = r * ((turn ? -1. : 1.) / std::sqrt(plainSquare(r)));
+	broken.time.push_back(time), broken.first.push_back(turn ? S.id[j] : S.id[i]), broken.second.push_back(turn ? S.id[i] : S.id[j]);
+	broken.cause.push_back(int32_t(cause));
+	broken.middle.resize(n + 1), broken.normal.resize(n + 1);
+	broken.middle.set(n, S.position.at(i) + r * 0.5), broken.normal.set(n, along);
 }
 
 /// One end of a link that breaks. It stays known as one that has held; its stresses go on in the contact.

@@ -106,6 +106,9 @@ void Solver::inheritState(const Solver& old)
 {
 	Store&       S = store;
 	const Store& O = old.store;
+	broken = old.broken;
+	for (size_t q = 0; q < old.asked.size(); q += 2)
+		if (indexOf(old.asked[q]) >= 0 && indexOf(old.asked[q + 1]) >= 0) asked.push_back(old.asked[q]), asked.push_back(old.asked[q + 1]);
 	sums = old.sums, counters = old.counters, time = old.time, lastDt = old.lastDt, lastMove = old.lastMove, lastSort = old.lastSort, dtLimit = old.dtLimit,
 	filterTime = old.filterTime;
 	for (size_t i = 0; i < S.size(); i++) {

@@ -170,7 +170,7 @@ void Solver::searchIfNeeded()
 	if (searched.size() != store.size()) searchDue = true;
 	// links break in batches, every fourth step: each batch needs a search, and a few steps do not matter to a process that takes hundreds
 	std::vector<int32_t> ends;
-	if (counters.steps % breakPeriod == 0 && breaking()) {
+	if (!asked.empty() || (counters.steps % breakPeriod == 0 && breaking())) {
 		Timer t(timing, counters.nsFracture);
 		ends = breakLinks();
 	}

@@ -60,6 +60,9 @@ public:
 	/// External force [N/m] and torque [N] of automaton i for the next integrate().
 	void addForce(size_t i, Vec<double> force, Turn<double> torque);
 	void clearForces();
+	/// Velocity of automaton i along an axis for the next integrate() [m/s]; what its own mass takes is booked as work of the outside. Throws Error
+	/// where it is not blocked along that axis, or tied.
+	void   drive(size_t i, int axis, double velocity);
 	/// Viscous (transmitting) boundary: force -b v, b = rho c A [kg/(m s)] per direction.
 	void setDamping(size_t i, Vec<double> b);
 	/// Automaton i is carried by others from now on: it keeps no mass of its own in the sums and moves with the velocity it is told.
@@ -83,6 +86,15 @@ public:
 	double   time = 0;
 	/// Links that hold, both ends once: (id, id).
 	std::vector<std::pair<int32_t, int32_t>> links() const;
+	/// Breaks these links (pairs of callers' numbers) at the start of the next computeForces(), as fracture does; returns how many of them hold.
+	/// Throws Error for an unknown number.
+	size_t cut(const std::vector<std::pair<int32_t, int32_t>>& pairs);
+	/// All that have broken, in turn.
+	struct {
+		std::vector<double>  time;
+		std::vector<int32_t> first, second, cause; ///< BreakCause
+		Vectors              middle, normal;       ///< of the link [m]; from the first to the second
+	} broken;
 	/// After positions or velocities were changed from outside: new contact search, no strain from the change. Call computeForces() before
 	/// changing anything, so that the strain of the last step is not lost.
 	void moved();
@@ -163,6 +175,10 @@ private:
 	double determinantNow(size_t i) const;
 	void   keepVolume(size_t i, double J);
 	void   scaleStresses(size_t i, double ratio);
+	int    linkOf(size_t i, size_t j) const;
+	void   noteBreak(size_t i, int k, BreakCause cause);
+	BreakCause           causeAt(size_t i, int k) const;
+	LinkEnd              linkEnd(size_t i, int k) const;
 	std::vector<int32_t> breakLinks();
 	void   settleVolumes();
 	void   filterVolumes();
@@ -195,6 +211,7 @@ private:
 	template <class F> void eachAwake(F&& f);
 	template <class F> void archive(F&& f);
 	static uint64_t         layout(); ///< of the saved state: follows from the names and kinds of what archive() lists
+	void                    checkBroken() const;
 	void                    checkState() const; ///< after loading: throws Error unless all fits together
 	[[noreturn]] void       overlapError(size_t i, size_t j, double ratio) const;
 
@@ -217,6 +234,7 @@ private:
 	double                   filterTime = 0;    ///< since its last call [s]
 	bool                     flows = false;     ///< some material yields
 	int64_t                  lastSort = 0;
+	std::vector<int32_t>     asked; ///< numbers of pairs whose links break at the start of the next step
 	std::vector<std::pair<int32_t, double>> unsettled; ///< lost its links in the present search, with the volume that contacts must take over
 	Vectors              searched; ///< where all automata were at the last search of all: the list of contacts is that of these places, see searchEnds()
 	std::vector<int32_t> watch;    ///< whose displacements since then tell when contacts are searched anew, see watched(); in any order

@@ -149,6 +149,7 @@ template <class F> void Solver::archive(F&& to)
 		place, watch, adjacentBegin, adjacent, awake, tied, results, options, counters, time, lastDt, lastMove, dtLimit, contactSpeed2,
 		topologyChanged, searchDue, sums);
 	f.MCA_EACH(lastSort, filterTime, flows);
+	f.MCA_EACH(asked, broken.time, broken.first, broken.second, broken.cause, broken.middle, broken.normal);
 }
 
 uint64_t Solver::layout()

@@ -120,6 +120,17 @@ void checkNumbers(const Scene& scene)
 				+ "; the saved scene is damaged or was edited.");
 }
 
+const Body& automatonOf(const Scene& scene, int id, const string& call)
+{
+	const auto refuse = [&](const string& what) { throw std::runtime_error("McaEngine." + call + ": ids: " + what); };
+	if (!scene.bodies->exists(id)) refuse("there is no body " + std::to_string(id) + "; each must be the id of an automaton.");
+	const auto& b = scene.bodies->body[size_t(id)];
+	if (!isAutomaton(b) || !b->state)
+		refuse("body " + std::to_string(id) + " is no automaton; it must have material McaMat, shape Sphere and a state.");
+	if (!b->state->se3.position.allFinite()) refuse("the position of body " + std::to_string(id) + " must be finite.");
+	return *b;
+}
+
 void checkDamage(const Body& b, const McaState& s)
 {
 	if (!(s.damage >= 0 && s.damage <= 1e6)) refuseBody(b, "state.damage = " + numberText(s.damage) + " must be from 0 to 1e6.");

@@ -24,6 +24,8 @@ bool leavesPlane(const State& s);
 /// Throws mca::Error unless McaEngine can take over the motion of a body: finite, in the plane when that is the dimension.
 void   checkMotion(const Body& b, int dimension);
 string numberText(Real v);
+/// The automaton of this number; throws std::runtime_error that names the call of McaEngine when there is none.
+const Body& automatonOf(const Scene& scene, int id, const string& call);
 /// Throws mca::Error when state.damage is out of range, or given where the material has no damage model.
 void checkDamage(const Body& b, const McaState& s);
 

@@ -94,13 +94,15 @@ void McaEngine::checkScene(Scene* scene) const
 void McaEngine::readExternal(Scene* scene)
 {
 	const Vector3r g = acceleration();
+	const bool     loads = !loadRows.empty();
 	if (dimension == 2 && gravityZ != 0) throw mca::Error("McaEngine: gravityZ is for bodies in space; these are in plane strain: set it to 0.");
-	if (!readForces && g == Vector3r::Zero()) {
+	if (!readForces && g == Vector3r::Zero() && !loads) {
 		if (solver->hasForces()) solver->clearForces();
 		return;
 	}
 	solver->clearForces();
 	if (g != Vector3r::Zero()) solver->addGravity(triple(g));
+	if (loads) pushLoads(*scene);
 	if (!readForces) return;
 	scene->forces.sync();
 	for (int id : order) {
@@ -166,6 +168,7 @@ void McaEngine::checkStep(Scene* scene) const
 void McaEngine::integrate(Scene* scene)
 {
 	checkStep(scene);
+	if (!loadRows.empty()) driveLoads(*scene);
 	solver->integrate(scene->dt);
 	forcesReady = false;
 	stale       = true;

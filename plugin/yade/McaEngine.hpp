@@ -4,6 +4,7 @@
 #include "McaSolverEngine.hpp"
 #include "automata/automata.hpp"
 #include <boost/weak_ptr.hpp>
+#include <functional>
 #include <sdk/Blob.hpp>
 #include <core/Timing.hpp>
 
@@ -47,7 +48,12 @@ public:
 	py::dict   countersNow();
 	py::dict   phases();
 	py::list   linkList();
+	py::dict   brokenLinks();
+	long       cut(py::object pairs);
 	void       setViscous(const vector<int>& ids, const py::object& normal);
+	void       prescribe(const vector<int>& ids, py::object x, py::object y, py::object z);
+	void       push(const vector<int>& ids, py::object x, py::object y, py::object z);
+	void       clearLoads();
 	long       automataCount() const;
 	py::object momentum();
 
@@ -102,6 +108,9 @@ public:
 		    "along x and y [kg/(m s)]"))
 		((vector<int>, wallPairs, , Attr::hidden, "automaton and wall of each contact with one that has held a shear force, for the file"))
 		((vector<Vector3r>, wallShears, , Attr::hidden, "that force on the automaton [N/m, in space N]"))
+		((vector<Vector3r>, loadRows, , Attr::hidden, "of prescribe() and push(): what and where, number of bodies, number of points of the table"))
+		((vector<int>, loadIds, , Attr::hidden, "bodies of all of them"))
+		((vector<Vector2r>, loadPoints, , Attr::hidden, "points of their tables: time [s] and velocity [m/s] or force [N/m, in space N]"))
 		((vector<Real>, viscousZ, , Attr::hidden, "coefficients along z of the same [kg/s]"))
 		,
 		timingDeltas = shared_ptr<TimingDeltas>(new TimingDeltas);
@@ -128,7 +137,24 @@ public:
 		.def("counters", &McaEngine::countersNow, "Work done so far: steps, searches (for contacts of all), localSearches (where links broke), sorts, "
 		    "blockSteps (blocks of 64 computed), blocks, brokenLinks, clamped (equation of state beyond its clamp), "
 		    "deepest (smallest distance / rest distance), contacts, awake.")
+		.def("prescribe", &McaEngine::prescribe,
+		    (py::arg("ids"), py::arg("x") = py::object(), py::arg("y") = py::object(), py::arg("z") = py::object()),
+		    "Prescribe velocities [m/s] of these bodies: each of x, y, z a number, or a pair (times, values) that is linear between its points and "
+		    "constant before and after (times are O.time [s]); None leaves that direction as it is. Blocks these degrees of freedom "
+		    "(blockedDOFs). The work is in 'external'. Counts from the next step on; of two for one body and direction the later one. Raises "
+		    "RuntimeError for a body that is no automaton, a table that is none, z in plane strain.")
+		.def("push", &McaEngine::push, (py::arg("ids"), py::arg("x") = py::object(), py::arg("y") = py::object(), py::arg("z") = py::object()), "Put "
+		    "forces [N/m, in space N] on each of these bodies: each of x, y, z as in prescribe(). Several on one body add up. The work is in "
+		    "'external'.")
+		.def("clearLoads", &McaEngine::clearLoads, "Forget all of prescribe() and push(). Degrees of freedom stay blocked, with their last velocity.")
 		.def("links", &McaEngine::linkList, "Pairs of body ids whose link holds, list of (id1, id2).")
+		.def("cut", &McaEngine::cut, (py::arg("pairs")), "Break these links (list of (id1, id2), as links() gives them) at the start of the next step, "
+		    "as fracture does: no stress passes that pulls, pressure and friction do; the energy is booked as fracture. Returns how many of them hold. "
+		    "yade_mca.cracks.cut() finds them by a line or a predicate. Raises RuntimeError for an id that is no automaton of this engine or with "
+		    "contacts=False, TypeError when pairs are none.")
+		.def("brokenLinks", &McaEngine::brokenLinks, "All links that have broken so far, in turn, dict of numpy arrays (N,): 'time' [s] since the "
+		    "engine's first step, 'id1' < 'id2', 'x', 'y', 'z' [m] the middle of the link, 'nx', 'ny', 'nz' [-] its direction, across the crack, and "
+		    "'cause' (int): an index of yade_mca.cracks.CAUSES.")
 		.def("setViscous", &McaEngine::setViscous, (py::arg("ids"), py::arg("normal")), "Viscous (transmitting) boundary of Lysmer and Kuhlemeyer "
 		    "(1969) on these bodies: traction -rho cP v_n n - rho cS v_t on their outer width, in space on their share of the rectangle they "
 		    "cover; normal is (1,0), (-1,0), (0,1) or (0,-1), in space one of the six of three components. Read now; "
@@ -159,7 +185,6 @@ private:
 	shared_ptr<mca::Automata>    solver;
 	vector<shared_ptr<Body>>     walls;  ///< rigid bodies that automata touch
 	vector<mca::WallStart>       wallStarts;
-	bool                         nobodySums = false; ///< no engine of the scene sums the forces of its threads
 	vector<mca::WallPlace>       wallPlaces; ///< in this step
 	vector<Quaternionr>          wallTurns;  ///< their orientations
 	const vector<mca::WallPush>* wallPushes = nullptr;
@@ -191,6 +216,13 @@ private:
 	bool              wallsAreOthers(const Scene&) const;
 	static bool       mayBeTouched(const Body& b);
 	mca::WallStart    wallOf(const Scene&, const Body&) const;
+	template <class F> void eachLoad(F&& f) const;
+	void              load(int kind, const vector<int>& ids, const py::object (&along)[3], const char* call);
+	void              dropLoads(const std::function<bool(int)>& goes);
+	void              forgetLoads();
+	void              pushLoads(const Scene&);
+	void              driveLoads(const Scene&);
+	void              checkLoads(const mca::Automata& of) const;
 	void              gatherWalls(Scene* scene);
 	void              pushWalls(Real lastStep);
 	void              tellWalls(Scene* scene);

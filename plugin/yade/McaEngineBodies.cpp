@@ -66,7 +66,7 @@ void McaEngine::settleIn(Scene* scene)
 	if (present.get() != scene) throw mca::Error("McaEngine: it runs in a scene that is not the present one.");
 	const bool loaded = solver && bodies.empty() && !order.empty() && home.expired();
 	if (!loaded) {
-		if (!bodies.empty()) viscous.clear(), viscousZ.clear(); // dampers of bodies that are gone; those given before the first step stay
+		if (!bodies.empty()) viscous.clear(), viscousZ.clear(), forgetLoads(); // of bodies that are gone; those given before the first step stay
 		solver.reset();
 		letGo(bodies, same, known, walls), order.clear(), wallStarts.clear();
 		lost  = -1;
@@ -200,8 +200,8 @@ void McaEngine::gather(Scene* scene)
 	std::unordered_set<int> newIds;
 	for (auto& a : now.automata)
 		if (a.isNew) newIds.insert(a.id);
-	if (solver) // the dampers of bodies that are gone go with them
-		dropDampers([&](int id) { return !fresh->holds(id) || newIds.count(id); });
+	const auto goes = [&](int id) { return !fresh->holds(id) || newIds.count(id); };
+	if (solver) dropDampers(goes), dropLoads(goes); // with the bodies
 	if (goesOn) fresh->setWallTouches(solver->wallTouches());
 	wallStarts.clear();
 	solver      = fresh;

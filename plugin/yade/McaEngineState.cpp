@@ -83,7 +83,7 @@ void McaEngine::postLoad(McaEngine&)
 	if (dimension != 2 && dimension != 3) throw mca::Error("McaEngine: dimension in the file is neither 2 nor 3; the file is damaged or was edited.");
 	shared_ptr<mca::Automata> fresh(mca::automataIn(dimension));
 	fresh->load(string(bytes.begin(), bytes.end()));
-	checkLoaded(*fresh, order, viscous, viscousZ), loadWalls(*fresh);
+	checkLoaded(*fresh, order, viscous, viscousZ), loadWalls(*fresh), checkLoads(*fresh);
 	solver = fresh;
 	home.reset(), letGo(bodies, same, known, walls), wallStarts.clear();
 	looked = true, stale = false;
@@ -198,6 +198,29 @@ py::list McaEngine::linkList()
 	return l;
 }
 
+long McaEngine::cut(py::object pairs)
+{
+	const auto list = idPairs(pairs, "McaEngine.cut");
+	return long(read("cut", [&] { return solver->cut(list); }));
+}
+
+py::dict McaEngine::brokenLinks()
+{
+	const mca::BrokenLinks b = read("brokenLinks", [&] { return solver->brokenLinks(); });
+	py::dict               d;
+	const Py_ssize_t       n = Py_ssize_t(b.time.size());
+	d["time"] = sdk::arrayCopy(b.time.data(), { n });
+	d["id1"] = sdk::arrayCopy(b.first.data(), { n }), d["id2"] = sdk::arrayCopy(b.second.data(), { n }), d["cause"] = sdk::arrayCopy(b.cause.data(), { n });
+	for (size_t c = 0; c < 3; c++) {
+		vector<Real> x, normal;
+		for (const auto& p : b.middle) x.push_back(p[c]);
+		for (const auto& p : b.normal) normal.push_back(p[c]);
+		const string name(1, char('x' + c));
+		d[name] = sdk::arrayCopy(x.data(), { n }), d["n" + name] = sdk::arrayCopy(normal.data(), { n });
+	}
+	return d;
+}
+
 long McaEngine::automataCount() const
 {
 	return locked([&] { return solver ? long(order.size()) : 0L; });
@@ -224,16 +247,6 @@ namespace {
 		}
 		return axis;
 	}
-	const Body& automatonOf(const Scene& scene, int id)
-	{
-		const auto refuse = [&](const string& what) { throw std::runtime_error("McaEngine.setViscous: ids: " + what); };
-		if (!scene.bodies->exists(id)) refuse("there is no body " + std::to_string(id) + "; each must be the id of an automaton.");
-		const auto& b = scene.bodies->body[size_t(id)];
-		if (!isAutomaton(b) || !b->state)
-			refuse("body " + std::to_string(id) + " is no automaton; it must have material McaMat, shape Sphere and a state.");
-		if (!b->state->se3.position.allFinite()) refuse("the position of body " + std::to_string(id) + " must be finite.");
-		return *b;
-	}
 	Real diameterOf(const Body& b) { return 2. * static_cast<const Sphere*>(b.shape.get())->radius; }
 } // namespace
 
@@ -251,11 +264,11 @@ void McaEngine::setViscous(const vector<int>& ids, const py::object& normal)
 		// what one body stands for: extent of the set over the number of bodies in a line, in space area over their number
 		Vector3r lo = Vector3r::Constant(1e300), hi = -lo;
 		for (int id : ids) {
-			const Vector3r& x = automatonOf(*scene, id).state->se3.position;
+			const Vector3r& x = automatonOf(*scene, id, "setViscous").state->se3.position;
 			lo = lo.cwiseMin(x), hi = hi.cwiseMax(x);
 		}
 		for (int id : ids) {
-			const Body& b     = automatonOf(*scene, id);
+			const Body& b     = automatonOf(*scene, id, "setViscous");
 			const auto  mat   = static_cast<const McaMat*>(b.material.get())->toMaterial();
 			const Real  d     = diameterOf(b);
 			Real        share = 1. / Real(ids.size());

@@ -122,7 +122,6 @@ void McaEngine::gatherWalls(Scene* scene)
 			if (!b || !mayBeTouched(*b) || isAutomaton(b)) continue;
 			starts.push_back(wallOf(*scene, *b)), found.push_back(b);
 		}
-	nobodySums       = !hasEngine(*scene, "NewtonIntegrator");
 	const bool equal = starts.size() == wallStarts.size() && std::equal(starts.begin(), starts.end(), wallStarts.begin(), sameWall);
 	walls.swap(found);
 	letGo(found);
@@ -170,8 +169,8 @@ void McaEngine::tellWalls(Scene* scene)
 		scene->forces.addForce(walls[w]->id, vector3(p.force) * share), scene->forces.addTorque(walls[w]->id, vector3(p.torque) * share);
 		some = true;
 	}
-	// YADE's ForceResetter clears what has been summed over the threads; without anybody who does that forces would add up from step to step
-	if (some && nobodySums) scene->forces.sync();
+	// YADE's ForceResetter clears what has been summed over the threads, and its ServoPIDController reads the sums
+	if (some) scene->forces.sync();
 }
 
 /// Contacts with walls, for the file.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // McaGridEngine: conversion of what scripts give and take.
 #include "McaGridEngine.hpp"
+#include "McaTables.hpp"
 #include <sdk/arrayView.hpp>
 
 namespace yade {
@@ -61,6 +62,9 @@ namespace {
 		return t;
 	}
 
+	} // namespace
+	Table tableOf(const py::object& o, const char* name) { return table(o, name); }
+	namespace {
 	vector<int> nodeList(py::object o)
 	{
 		return argument("nodes", "the number of an open node or a sequence of such numbers (sideNodes, openNode)", [&] {

@@ -174,6 +174,21 @@ py::dict McaLaw::counters() const
 	return d;
 }
 
+long McaLaw::cut(py::object pairs)
+{
+	refuseWhileRunning("cut");
+	const auto& now  = Omega::instance().getScene()->interactions;
+	long        hold = 0;
+	for (const auto& [a, b] : idPairs(pairs, "McaLaw.cut")) {
+		const auto& I = now->find(a, b);
+		const auto* p = I ? castTo<const McaPhys>(I->phys.get()) : nullptr;
+		if (!p || !p->linked) continue;
+		asked.push_back(a), asked.push_back(b);
+		hold++;
+	}
+	return hold;
+}
+
 py::list McaLaw::links() const
 {
 	refuseWhileRunning("links");

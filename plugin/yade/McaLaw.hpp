@@ -24,6 +24,7 @@ public:
 	/// Of O.engines, as the last step found them.
 	const vector<const Engine*>& integrators() const { return newtons; }
 	py::list links() const;
+	long     cut(py::object pairs);
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(McaLaw, McaSolverEngine,
 		"First half of the law of movable cellular automata in YADE's loop (plane strain x, y, or space): volume and pressure of every automaton, "
@@ -76,6 +77,7 @@ public:
 		((Real, lastTotal, 0, Attr::hidden, "energies()['total'] of the last step [J/m]"))
 		((long, bookedAt, -1, Attr::hidden, "O.iter of the last step with O.trackEnergy"))
 		((vector<int>, members, , Attr::hidden, "ids of the automata of the last step"))
+		((vector<int>, asked, , Attr::hidden, "ids of pairs whose links break in the next step"))
 		,
 		/* ctor */
 		,
@@ -85,6 +87,9 @@ public:
 		.def("counters", &McaLaw::counters, "Work done so far: steps, brokenLinks, clamped, deepest.")
 		.def("links", &McaLaw::links, "Pairs of body ids whose link holds, list of (id1, id2). Raises RuntimeError while the simulation runs in the "
 		    "background.")
+		.def("cut", &McaLaw::cut, (py::arg("pairs")), "Break these links at the start of the next step; see McaEngine.cut(). Links are there from the "
+		    "first step on. Returns how many of them hold. Raises RuntimeError while the simulation runs in the background, TypeError when pairs are "
+		    "none.")
 	)
 	// clang-format on
 

@@ -48,6 +48,25 @@ inline Quaternionr orientationOf(const Vector3r& angle, int dimension)
 	if (dimension == 2 || a == 0) return Quaternionr(AngleAxisr(angle[2], Vector3r::UnitZ()));
 	return Quaternionr(AngleAxisr(a, Vector3r(angle / a)));
 }
+/// Pairs of ids that a script gives; throws Python's TypeError when they are none.
+inline std::vector<std::pair<int32_t, int32_t>> idPairs(const boost::python::object& pairs, const std::string& call)
+{
+	namespace py = boost::python;
+	std::vector<std::pair<int32_t, int32_t>> list;
+	const bool                               sequence = PySequence_Check(pairs.ptr());
+	bool                                     good     = sequence;
+	for (long q = 0, n = sequence ? py::len(pairs) : 0; good && q < n; q++) {
+		const py::object pair(pairs[q]);
+		if (!(good = PySequence_Check(pair.ptr()) && py::len(pair) == 2)) break;
+		const py::extract<int> a(pair[0]), b(pair[1]);
+		if ((good = a.check() && b.check())) list.emplace_back(a(), b());
+	}
+	if (!good) {
+		PyErr_SetString(PyExc_TypeError, (call + ": pairs must be a list of (id1, id2), as links() gives them.").c_str());
+		py::throw_error_already_set();
+	}
+	return list;
+}
 /// nameX, nameY, ...: the components for scripts.
 template <class Dict, class Vector> void putVector(Dict& to, const char* name, const Vector& v, int components = mca::dim)
 {

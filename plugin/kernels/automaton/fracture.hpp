@@ -40,6 +40,28 @@ inline bool breaks(const Fracture& f, const LinkEnd& a, const LinkEnd& b, double
 	return tension >= 0.5 * f.pairStress * (a.strength + b.strength);
 }
 
+/// Why a link broke; the first four are the criteria of automata.
+enum class BreakCause : int32_t { plasticStrain, spall, stress, damage, pairStress, collapsed, cut };
+constexpr int breakCauses = 7;
+/// Criteria of an automaton apart, in the order of BreakCause [-].
+struct CriteriaApart {
+	double of[4];
+	CriteriaApart(const Criteria& c, double eqps, double P, double equivalentStress, double damage, double strength)
+		: of { eqps * c.perStrain / strength, -P * c.perSpall / strength,
+		       fma(c.ofMises, equivalentStress, -c.ofPressure * P) * c.perMises / strength, damage / strength }
+	{
+	}
+};
+/// Of a link that breaks: the criterion with the largest mean where the mean of the ends' largest reaches 1, else what breaks() asks next.
+inline BreakCause causeOf(const LinkEnd& a, const LinkEnd& b, const CriteriaApart& ofA, const CriteriaApart& ofB, double r2, double d)
+{
+	if (!(0.5 * (a.criterion + b.criterion) >= 1.)) return r2 < sqr(collapsed * d) ? BreakCause::collapsed : BreakCause::pairStress;
+	int most = 0;
+	for (int k = 1; k < 4; k++)
+		if (ofA.of[k] + ofB.of[k] > ofA.of[most] + ofB.of[most]) most = k;
+	return BreakCause(most);
+}
+
 /// Sum of the volume rule at rest with which the links that are left go on at the volume J; sum: of what they and the contacts measure now.
 template <VolumeRule rule> inline double restKeeping(double J, double sum, double invN) { return sum - meanTerm<rule>(J) / invN; }
 

@@ -4,6 +4,7 @@
 #include "automata/sides.hpp"
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
+#include <set>
 #include <kernels/automaton/filter.hpp>
 #include <kernels/automaton/fracture.hpp>
 
@@ -28,10 +29,15 @@ void Loop::breakLinks()
 {
 	vector<std::pair<int, int>> pairs; // (row, link)
 	vector<int>                 touched;
+	std::set<std::pair<int, int>> cut; // by a script
+	for (size_t q = 0; q < law.asked.size(); q += 2) cut.insert(std::minmax(law.asked[q], law.asked[q + 1]));
+	const auto asked = [&](size_t i, int k) { return cut.count(std::minmax(rows[i].id, rows[size_t(rows[i].link[k].other)].id)) > 0; };
+	const bool due = law.steps % mca::breakPeriod == 0;
 	for (size_t i = 0; i < rows.size(); i++)
 		for (int k = 0; k < nLinks; k++)
-			if (rows[i].link[k].p && breaks(rows[i], k))
+			if (rows[i].link[k].p && (asked(i, k) || (due && breaks(rows[i], k))))
 				pairs.emplace_back(int(i), k), touched.push_back(int(i)), touched.push_back(rows[i].link[k].other);
+	law.asked.clear();
 	std::sort(touched.begin(), touched.end());
 	touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
 	// the volume at the present positions, as all links measure it: the work of the last move must not be lost

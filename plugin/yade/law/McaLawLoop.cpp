@@ -79,7 +79,7 @@ void Loop::step(Scene* scene)
 	for (Row& r : rows)
 		lastMotion(r);
 	if (law.doneAt != scene->iter) {
-		if (law.steps % mca::breakPeriod == 0) breakLinks();
+		if (!law.asked.empty() || law.steps % mca::breakPeriod == 0) breakLinks();
 		findContacts(scene);
 		settleVolumes(scene->trackEnergy);
 		law.filterTime += law.lastMove;
