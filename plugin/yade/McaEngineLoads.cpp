@@ -55,22 +55,23 @@ void McaEngine::dropLoads(const std::function<bool(int)>& goes)
 
 void McaEngine::load(int kind, const vector<int>& ids, const py::object (&along)[3], const char* call)
 {
-	const char* names[] = { "x", "y", "z" };
-	Table       tables[3];
-	bool        given[3];
+	const string where = string("McaEngine.") + call + ": ";
+	if (ids.empty()) throw mca::Error(where + "ids names no body; give the id of at least one automaton.");
+	Table        tables[3];
+	bool         given[3];
 	for (int c = 0; c < 3; c++)
-		if ((given[c] = !along[c].is_none())) tables[c] = tableOf(along[c], names[c]);
+		if ((given[c] = !along[c].is_none())) tables[c] = tableOf(along[c], (where + char('x' + c)).c_str());
+	if (!(given[0] || given[1] || given[2])) throw mca::Error(where + "give at least one of x, y, z: a number or a pair (times, values).");
 	locked([&] {
 		const auto scene = Omega::instance().getScene();
 		settleIn(scene.get());
 		const int n = solver ? dimension : dimensionOf(*scene);
-		if (ids.empty()) throw mca::Error(string("McaEngine.") + call + ": ids names no body.");
-		if (n == 2 && given[2]) throw mca::Error(string("McaEngine.") + call + ": z is for bodies in space; these are in plane strain.");
+		if (n == 2 && given[2]) throw mca::Error(where + "z must be None, left out: it is for bodies in space, and these are in plane strain.");
 		for (int id : ids) automatonOf(*scene, id, call); // refuses what is none
 		vector<int> sorted(ids);
 		std::sort(sorted.begin(), sorted.end());
 		if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
-			throw mca::Error(string("McaEngine.") + call + ": ids names a body twice.");
+			throw mca::Error(where + "ids names a body twice; name each once.");
 		for (int c = 0; c < n; c++) {
 			if (!given[c]) continue;
 			for (int id : ids)

@@ -27,10 +27,11 @@ ALSO_CALLED = {
 BY_NAME = {
         'block': 0, 'side': 'left', 'start': 0, 'end': -1, 'nodes': [0, 1], 'direction': (1., 0.), 'velocity': (1., 0.), 'at': (1e-3, 1e-3), 'period': 1,
         'number': 0, 'n': 5, 'ids': [0, 1], 'normal': (1., 0.), 'name': 'vx', 'i': 1, 'j': 1, 'what': 'x', 'xs': [10e-3, 11e-3, 12e-3],
-        'ys': [0., 1e-3, 2e-3], 'value': 1e6, 'names': ['x'], 'volumeRatio': 0.95, 'plasticStrain': 0.1, 'rate': 10., 'temperature': 400., 'threads': 1
+        'ys': [0., 1e-3, 2e-3], 'value': 1e6, 'names': ['x'], 'pairs': [(0, 1)], 'volumeRatio': 0.95, 'plasticStrain': 0.1, 'rate': 10., 'temperature': 400., 'threads': 1
 }
 BY_TYPE = {'int': 0, 'float': 1., 'str': '', 'bool': True, 'object': 1.}
 ARGUMENTS = {
+        'McaEngine.prescribe': {'x': 1.}, 'McaEngine.push': {'x': 1.},
         'McaGridEngine.addBlock': {'x': [[10e-3, 11e-3], [10e-3, 11e-3]], 'y': [[0, 0], [1e-3, 1e-3]]},
         'McaGridEngine.prescribeNodes': {'velocity': 1.},
         'McaGridEngine.probeLine': {'start': (0., 1e-3), 'end': (3e-3, 1e-3)},
@@ -44,7 +45,7 @@ def goodArguments(key, given):
 		import every_call_scenes as scenes
 		out = {}
 		for t, name, default in given:
-			if default and name not in ('start', 'end'): continue
+			if default and name not in ('start', 'end') and name not in ARGUMENTS.get(key, ()): continue
 			if t == 'Material': out[name] = scenes.metal()
 			elif name in ARGUMENTS.get(key, ()): out[name] = ARGUMENTS[key][name]
 			elif name in BY_NAME: out[name] = BY_NAME[name]

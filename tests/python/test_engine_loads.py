@@ -155,7 +155,7 @@ def test_refusals(plugin):
 	ids = scene.block(6, 6).tolist()
 	e = scene.engine(DT)
 	for call in e.prescribe, e.push:
-		for given, words in (dict(x=((0, 1), (2., ))), 'x'), (dict(y=((1, 0), (2., 3.))), 'y'), (dict(x='fast'), 'x'), (dict(x=math.nan), 'x'), (dict(z=1.), 'z is for bodies in space'):
+		for given, words in (dict(x=((0, 1), (2., ))), 'x'), (dict(y=((1, 0), (2., 3.))), 'y'), (dict(x='fast'), 'x'), (dict(x=math.nan), 'x'), (dict(z=1.), 'z must be None'):
 			with pytest.raises(RuntimeError, match=words): call(ids[:2], **given)
 		with pytest.raises(RuntimeError, match='there is no body 99999'): call([99999], x=1.)
 		with pytest.raises(RuntimeError, match='names a body twice'): call([ids[0], ids[0]], x=1.)
