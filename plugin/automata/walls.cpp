@@ -95,11 +95,10 @@ void Walls::look(const Solver& solver, size_t block, double level)
 	if (!n.walls.empty()) n.slack = 0.5 * d; // those left out are farther
 }
 
-/// Whether a nearer surface hides the foot: it lies in that one's plane or behind it, as at the edge between two facets that go on into each other.
 bool Walls::hidden(const WallGap& gap, double d) const
 {
 	for (const WallGap& g : found)
-		if (dot(gap.foot - g.foot, g.normal) <= 1e-9 * d) return true;
+		if (isHidden(gap, g, d)) return true;
 	return false;
 }
 

@@ -124,6 +124,14 @@ inline WallBounds boundsOf(const WallForm& w, const WallPlace& at)
 	return b;
 }
 
+/// Surfaces whose normals differ by less (the cosine of 15 degrees) are one, as neighbouring facets of a curved body are.
+constexpr double sameFace = 0.966;
+/// Whether a surface is hidden by a nearer one: it is the same face, or its foot lies in the plane of that one or behind it, as at the edge between two facets.
+inline bool isHidden(const WallGap& gap, const WallGap& nearer, double d)
+{
+	return dot(gap.normal, nearer.normal) > sameFace || dot(gap.foot - nearer.foot, nearer.normal) <= 1e-9 * d;
+}
+
 /// Whether x is within `reach` of the box, in each direction [m].
 inline bool isNear(const WallBounds& b, const Point& x, double reach)
 {

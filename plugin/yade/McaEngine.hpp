@@ -185,6 +185,7 @@ private:
 	shared_ptr<mca::Automata>    solver;
 	vector<shared_ptr<Body>>     walls;  ///< rigid bodies that automata touch
 	vector<mca::WallStart>       wallStarts;
+	bool                         forcesAreReset = false; ///< the scene has a ForceResetter
 	vector<mca::WallPlace>       wallPlaces; ///< in this step
 	vector<Quaternionr>          wallTurns;  ///< their orientations
 	const vector<mca::WallPush>* wallPushes = nullptr;

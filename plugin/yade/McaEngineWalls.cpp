@@ -129,8 +129,7 @@ void McaEngine::gatherWalls(Scene* scene)
 	wallPlaces.clear(); // a script may have moved them
 	if (walls.empty()) return;
 	if (coupled) refuseBody(*walls[0], "the grid that automata are tied to would pass through it; drive or hold the grid's sides, or give it mask=0.");
-	if (!hasEngine(*scene, "ForceResetter"))
-		refuseBody(*walls[0], "its forces would add up from step to step: put a ForceResetter first in O.engines, as for YADE's own laws.");
+	forcesAreReset = hasEngine(*scene, "ForceResetter");
 }
 
 /// Forces of walls on automata. Those on the walls are kept for tellWalls().
@@ -165,6 +164,10 @@ void McaEngine::tellWalls(Scene* scene)
 	for (size_t w = 0; w < walls.size(); w++) {
 		const mca::WallPush& p = (*wallPushes)[w];
 		if (dot(p.force, p.force) == 0 && dot(p.torque, p.torque) == 0) continue;
+		if (!forcesAreReset)
+			refuseBody(
+				*walls[w],
+				"automata touch it, and its forces would add up from step to step: put a ForceResetter first in O.engines, as YADE asks.");
 		const Real share = wallStarts[w].mass > 0 ? kick : 1.;
 		scene->forces.addForce(walls[w]->id, vector3(p.force) * share), scene->forces.addTorque(walls[w]->id, vector3(p.torque) * share);
 		some = true;
