@@ -9,7 +9,6 @@ namespace mca::automata {
 
 class Walls {
 public:
-	bool empty() const { return walls.empty(); }
 	/// Others than before, or other forms; contacts go on by their numbers.
 	void set(std::vector<WallStart> list);
 	/// Contacts that have held shear forces, by number of automaton and wall.

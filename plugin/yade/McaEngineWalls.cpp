@@ -71,8 +71,13 @@ namespace {
 		return s.blockedDOFs == State::DOF_ALL ? 0. : s.mass;
 	}
 	/// was: its place a step of dt ago. A velocity alone moves nothing, and friction would take it for motion.
-	void checkMoved(const Body& b, const mca::WallPlace& was, Real dt)
+	void checkMoved(const Body& b, const mca::WallPlace& was, const Quaternionr& turned, Real dt)
 	{
+		if (length(was.spin) * dt > 1e-12 && b.state->se3.orientation.coeffs() == turned.coeffs())
+			refuseBody(
+				b, "its angVel of " + numberText(length(was.spin))
+					+ " rad/s has not turned it in the last step: put NewtonIntegrator(damping=0, mask=...) last in O.engines, with a "
+					  "mask of this body that no automaton has, or set angVel to 0.");
 		const Vector3r x = b.state->se3.position, before = vector3(was.position);
 		if (x != before || !(length(was.velocity) * dt > 1e-12 * (x.norm() + length(was.velocity) * dt))) return;
 		refuseBody(
@@ -141,7 +146,7 @@ void McaEngine::pushWalls(Real lastStep)
 	for (size_t w = 0; w < walls.size(); w++) {
 		const State& s = *walls[w]->state;
 		auto&        p = wallPlaces[w];
-		if (before) checkMoved(*walls[w], p, lastStep);
+		if (before) checkMoved(*walls[w], p, wallTurns[w], lastStep);
 		if (!(s.se3.position.allFinite() && s.vel.allFinite() && s.angVel.allFinite() && std::fabs(s.se3.orientation.norm() - 1.) < 1e-3))
 			refuseBody(*walls[w], "its position, velocity or orientation is not finite, or the orientation is no rotation.");
 		p.velocity = point(s.vel), p.spin = point(s.angVel);

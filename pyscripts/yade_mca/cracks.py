@@ -85,11 +85,14 @@ def cut(engine, where):
 	"""Breaks the links of a McaEngine or McaLaw that cross `where` (see crossing()) at the start of the next step; returns how many (int).
 
 	For pre-cracks and notches before the first step of McaEngine (McaLaw links in its first step: cut after one of no motion), or at any time between steps.
-	What is cut does not pull any more; pressure and friction pass as between any two surfaces. Raises CrackError for a `where` that is none, and what
-	engine.cut() raises.
+	What is cut does not pull any more; pressure and friction pass as between any two surfaces. Raises CrackError for a `where` that is none and before there are
+	links, and what engine.cut() raises.
 	"""
 	pairs = engine.links()
-	if not pairs: return 0
+	if not pairs:
+		started = engine.steps if hasattr(engine, 'steps') else len(engine.ids)
+		if not started: raise CrackError('the engine has no links yet: it needs automata in O.bodies, and McaLaw makes links in its first step; O.run(1, True) before cut()')
+		return 0
 	ends = _places(engine, np.array(pairs))
 	found = crossing(where, ends[:, 0], ends[:, 1])
 	return engine.cut([pairs[k] for k in np.flatnonzero(found)])

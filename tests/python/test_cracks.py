@@ -192,6 +192,11 @@ def test_refusals(plugin):
 	for bins in 0, 2.5, True:
 		with pytest.raises(CrackError, match='bins'): cracks.rose(e, bins)
 	O.reset()
+	law2_scene.impact()
+	law2_scene.engines('law2', 2e-8)
+	with pytest.raises(CrackError, match='no links yet'): cracks.cut(law2_scene.density(), ((-1, 0), (1, 0)))
+	O.reset()
+	with pytest.raises(CrackError, match='no links yet'): cracks.cut(engine_scene.engine(1e-8), ((-1, 0), (1, 0)))
 	engine_scene.block()
 	e = engine_scene.engine(1e-8, contacts=False)
 	with pytest.raises(RuntimeError, match='contacts=False'): e.cut([(0, 1)])

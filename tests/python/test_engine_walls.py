@@ -313,7 +313,9 @@ def test_refusals(plugin):
 	O.run(1, True)
 	O.bodies[w].state.vel = (1, 0, 0)
 	with pytest.raises(RuntimeError, match='body %d: its velocity of 1 m/s has not moved it in the last step' % w): O.run(3, True)
-	O.bodies[w].state.vel = (0, 0, 0)
+	O.bodies[w].state.vel, O.bodies[w].state.angVel = (0, 0, 0), (0, 0, 5)
+	with pytest.raises(RuntimeError, match='body %d: its angVel of 5 rad/s has not turned it in the last step' % w): O.run(3, True)
+	O.bodies[w].state.angVel = (0, 0, 0)
 	O.bodies[w].material = None
 	with pytest.raises(RuntimeError, match='body %d: .* give it a FrictMat' % w): O.run(1, True)
 	block(2)
