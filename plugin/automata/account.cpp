@@ -41,6 +41,14 @@ Account Solver::account() const
 	return A;
 }
 
+double Solver::ownMass() const
+{
+	double sum = 0;
+	for (size_t i = 0; i < store.size(); i++)
+		if (store.id[i] >= 0 && !(store.flags[i] & tiedBit)) sum += store.mass[i];
+	return sum;
+}
+
 double Solver::equivalentStress(size_t i) const
 {
 	const Store& S  = store;

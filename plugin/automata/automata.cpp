@@ -55,6 +55,11 @@ namespace {
 			for (size_t i = 0; i < S.size(); i++)
 				if (S.id[i] >= 0) solver.addForce(i, vectorOf(acceleration) * S.mass[i], {});
 		}
+		void addPressure(int id, double pressure) override { solver.addForce(at(id), solver.perPressure(at(id)) * -pressure, {}); }
+		void resist(double share) override { solver.resist(share); }
+		void checkStress(int id, double pressure, const Deviator& deviator) const override { solver.checkStress(at(id), pressure, deviator); }
+		void setStress(int id, double pressure, const Deviator& deviator) override { solver.setStress(at(id), pressure, deviator); }
+		void setPairRules(const PairRules& rules) override { solver.setPairRules(rules); }
 		void clearForces() override { solver.clearForces(); }
 		bool hasForces() const override { return !S.outside.empty(); }
 		void setDamping(int id, const Triple& b) override { solver.setDamping(at(id), vectorOf(b)); }
@@ -113,6 +118,8 @@ namespace {
 			b.kinetic = a.kinetic, b.volumetric = a.volumetric, b.deviatoric = a.deviatoric, b.plastic = a.plastic, b.viscous = a.viscous;
 			b.friction = a.friction, b.fracture = a.fracture, b.coupling = a.coupling, b.boundary = a.boundary;
 			b.left = a.left, b.external = a.external;
+			b.leftMass = a.leftMass, b.leftKinetic = a.leftKinetic, b.leftVolumetric = a.leftVolumetric, b.leftDeviatoric = a.leftDeviatoric;
+			b.leftMomentum = tripleOf(a.leftMomentum);
 			b.bookedVolumetric = a.bookedVolumetric, b.bookedDeviatoric = a.bookedDeviatoric, b.bookedViscous = a.bookedViscous;
 			b.centre = a.centre, b.kineticStart = a.kineticStart, b.heated = a.heated;
 			b.momentum = tripleOf(a.momentum), b.angular = tripleOf(a.angular), b.impulse = tripleOf(a.impulse);

@@ -3,10 +3,12 @@
 // plane strain, and automata go by the caller's numbers. solver.hpp says what each call does.
 #pragma once
 #include "../kernels/api.hpp"
+#include "../kernels/deviator.hpp"
 #include "../kernels/dimension.hpp"
 #include "../kernels/material.hpp"
 #include "../kernels/wall.hpp"
 #include "common.hpp"
+#include "pair_rules.hpp"
 #include <array>
 #include <memory>
 #include <optional>
@@ -99,6 +101,11 @@ public:
 	/// Velocity along an axis, which must be blocked, for the next integrate() [m/s].
 	virtual void drive(int id, int axis, double velocity) = 0;
 	virtual void addGravity(const Triple& acceleration) = 0;
+	virtual void addPressure(int id, double pressure) = 0; ///< on the free side of an automaton [Pa]
+	virtual void resist(double share) = 0;
+	virtual void checkStress(int id, double pressure, const Deviator& deviator) const = 0;
+	virtual void setStress(int id, double pressure, const Deviator& deviator) = 0;
+	virtual void setPairRules(const PairRules& rules) = 0;
 	virtual void clearForces() = 0;
 	virtual bool hasForces() const = 0; ///< some have been added at some time
 	virtual void setDamping(int id, const Triple& b) = 0;

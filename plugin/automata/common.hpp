@@ -14,6 +14,7 @@ struct AutomataOptions {
 	bool       account      = false; ///< keep the energy account
 	bool       contacts     = true; ///< search for contacts
 	double     volumeFilter = 0.1; ///< rate at which the shortest waves of volume fade in flowing material, times d/c0 [-]; affine rule
+	bool       acrossMasks  = false; ///< the caller has made one group of all masks
 	bool       fullLinks    = false; ///< keep full weight of links and cells at weighted rims (no half bonds)
 };
 
@@ -22,7 +23,8 @@ struct AutomataOptions {
 template <class Vector, class Turned> struct AccountOf {
 	double kinetic = 0, volumetric = 0, deviatoric = 0;                    ///< now
 	double plastic = 0, viscous = 0, friction = 0, fracture = 0, coupling = 0, boundary = 0; ///< dissipated (coupling: exchanged) since build
-	double left     = 0;                                                   ///< stored in automata that were erased, less that of added ones
+	double left     = 0; ///< energy of automata that were erased, less that of added ones, and what was put in as stress: the sum goes on
+	double leftMass = 0, leftKinetic = 0, leftVolumetric = 0, leftDeviatoric = 0; ///< parts of it [kg/m, in space kg; J/m, in space J]
 	double external = 0;                                                   ///< work of external forces and driven automata
 	double bookedVolumetric = 0, bookedDeviatoric = 0, bookedViscous = 0;  ///< work of the internal forces
 	double centre = 0; ///< velocities stand half a step after stresses: kinetic energy, work from outside and of viscous forces then, minus now
@@ -30,6 +32,7 @@ template <class Vector, class Turned> struct AccountOf {
 	Vector momentum {}; ///< [N s/m]
 	Turned angular {};  ///< angular momentum about the origin [N s]
 	Vector impulse {};  ///< of external forces, driven and viscous boundaries [N s/m]
+	Vector leftMomentum {}; ///< that erased automata had, less that of added ones [N s/m]
 	/// kinetic energy gained minus all work booked: round-off
 	double bookedError() const { return kinetic - kineticStart - bookedVolumetric - bookedDeviatoric - bookedViscous - external + boundary; }
 	/// independent sum at the time of the stresses

@@ -34,10 +34,11 @@ inline std::vector<PairConstants> pairConstants(const Store& S)
 	for (const Species& a : S.species)
 		for (const Species& b : S.species) {
 			const Material &    m = S.materials[a.material], &o = S.materials[b.material];
-			const PairViscosity v = viscosityOf(m, o);
+			const PairRule&     rule = S.pairRules.of(a.material, b.material);
+			const PairViscosity v    = viscosityOf(m, o, rule);
 			const double        q = arm(a.d, b.d), twoG = seriesTwoG(m.G, o.G, q);
 			table.push_back(
-				{ 0.5 * (a.d + b.d), q, twoG, std::min(m.friction, o.friction), v.linear, v.quadratic, reciprocal(twoG), reciprocal(m.G) });
+				{ 0.5 * (a.d + b.d), q, twoG, frictionOf(m, o, rule), v.linear, v.quadratic, reciprocal(twoG), reciprocal(m.G) });
 		}
 	return table;
 }

@@ -29,18 +29,21 @@ template <class F> void Solver::eachBreaking(F&& f) const
 	const Store& S   = store;
 	for (int32_t b : awake) {
 		const Material& m = S.materialOf(S.blocks[b]);
-		if (!m.fracture.active()) continue;
-		const bool pairStress = std::isfinite(m.fracture.pairStress);
+		const auto      weak = S.pairRules.weakest(S.species[size_t(S.blocks[b].species)].material);
+		if (!m.fracture.active() && !weak.tension) continue;
+		const bool pairStress = std::isfinite(m.fracture.pairStress) || weak.tension;
 		const bool close = results[b].nearest < sqr(collapsed);
-		if (results[b].criterion < 1. && !pairStress && !close) continue;
+		if (results[b].criterion < weak.strength && !pairStress && !close) continue;
 		for (int l = 0; l < S.blocks[b].count; l++) {
 			const size_t i = size_t(b) * blockSize + l;
-			if (!(S.flags[i] & linkBits) || (S.criterion[i] < 1. && !pairStress && !close)) continue;
+			if (!(S.flags[i] & linkBits) || (S.criterion[i] < weak.strength && !pairStress && !close)) continue;
 			for (int k = 0; k < nLinks; k++) {
 				if (!holds(S.flags[i], k)) continue;
 				const size_t j = S.neighbour[linkSlot(i, k)];
 				const LinkEnd a = linkEnd(i, k), b = linkEnd(j, Lattice::opposite(k));
-				if (mca::breaks(m.fracture, a, b, S.distance2(i, j), S.restDistance(i, j)) && f(i, k)) return;
+				if (mca::breaks(m.fracture, a, b, S.distance2(i, j), S.restDistance(i, j), S.ruleOf(S.speciesOf(i), S.speciesOf(j)))
+				    && f(i, k))
+					return;
 			}
 		}
 	}
@@ -123,7 +126,8 @@ BreakCause Solver::causeAt(size_t i, int k) const
 		return CriteriaApart(
 			Criteria(S.materialOf(i).fracture), S.eqps[q], S.mean[q], equivalentStress(q), S.damage.empty() ? 0. : S.damage[q], S.strength[q]);
 	};
-	return mca::causeOf(linkEnd(i, k), linkEnd(j, Lattice::opposite(k)), apart(i), apart(j), S.distance2(i, j), S.restDistance(i, j));
+	const PairRule& rule = S.ruleOf(S.speciesOf(i), S.speciesOf(j));
+	return mca::causeOf(linkEnd(i, k), linkEnd(j, Lattice::opposite(k)), apart(i), apart(j), S.distance2(i, j), S.restDistance(i, j), rule);
 }
 
 void Solver::noteBreak(size_t i, int k, BreakCause cause)

@@ -145,7 +145,11 @@ void Solver::inheritState(const Solver& old)
 	// what joined or left changes the sum, not the balance
 	const Account now = account(), before = old.account();
 	sums.kineticStart += now.kinetic - before.kinetic;
-	sums.left += before.volumetric + before.deviatoric - now.volumetric - now.deviatoric;
+	sums.leftKinetic += before.kinetic - now.kinetic, sums.leftVolumetric += before.volumetric - now.volumetric,
+		sums.leftDeviatoric += before.deviatoric - now.deviatoric;
+	sums.left += before.kinetic + before.volumetric + before.deviatoric - now.kinetic - now.volumetric - now.deviatoric;
+	sums.leftMomentum += before.momentum - now.momentum;
+	sums.leftMass += old.ownMass() - ownMass();
 	wake();
 	for (size_t i = 0; i < S.size(); i++)
 		results[i / blockSize].criterion = std::max(results[i / blockSize].criterion, S.flags[i] & linkBits ? S.criterion[i] : 0.);

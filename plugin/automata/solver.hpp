@@ -63,6 +63,17 @@ public:
 	/// Velocity of automaton i along an axis for the next integrate() [m/s]; what its own mass takes is booked as work of the outside. Throws Error
 	/// where it is not blocked along that axis, or tied.
 	void   drive(size_t i, int axis, double velocity);
+	/// Cundall's damping: takes this share of every component of force and torque away where it drives the motion, and adds it where it slows it down,
+	/// as a force from outside for the next integrate(). Not physics: a way to a state of rest.
+	void   resist(double share);
+	/// Force that a pressure of 1 Pa inside of automaton i and of those it is linked to gives it: minus that is what 1 Pa on the free surface does [m].
+	Vec<double> perPressure(size_t i) const;
+	/// Puts a stress [Pa] into automaton i as it lies now: the deviator into its links, the pressure as a volume ratio; its rest state changes, nobody
+	/// moves. Who has no volume by its links gets the deviator alone. Throws Error where the material does not bear it.
+	void   setStress(size_t i, double pressure, const Deviator& deviator);
+	void   checkStress(size_t i, double pressure, const Deviator& deviator) const; ///< throws what setStress() would
+	/// Of pairs of materials; counts from the next computeForces() on.
+	void   setPairRules(const PairRules& rules) { store.pairRules = rules, searchDue = true; }
 	/// Viscous (transmitting) boundary: force -b v, b = rho c A [kg/(m s)] per direction.
 	void setDamping(size_t i, Vec<double> b);
 	/// Automaton i is carried by others from now on: it keeps no mass of its own in the sums and moves with the velocity it is told.
@@ -205,6 +216,7 @@ private:
 	void        bookBlock(size_t b, double kick, double after, const Kicked& to);
 	void        bookStep(double kick, double after);
 	void   unlink(size_t i, int k);
+	double ownMass() const; ///< of all that are not tied
 	double coldEnergyAt(size_t i, double J) const;
 	double contactEnergyAt(size_t i, double Jc) const;
 	double deviatorEnergyOf(size_t i) const; ///< of links and szz [J/m]

@@ -101,7 +101,10 @@ namespace {
 		void operator()(Species& s) { MCA_EACH(s.material, s.d); }
 		void operator()(Material& m) { eachConstant(m, *this); }
 		void operator()(BlockResult& r) { MCA_EACH(r.stiffest, r.closing, r.widest, r.nearest, r.criterion, r.clamped, r.bad); }
-		void operator()(Options& o) { MCA_EACH(o.volumeRule, o.linkFactor, o.skin, o.sleeping, o.account, o.contacts, o.volumeFilter, o.fullLinks); }
+		void operator()(Options& o)
+		{
+			MCA_EACH(o.volumeRule, o.linkFactor, o.skin, o.sleeping, o.account, o.contacts, o.volumeFilter, o.acrossMasks, o.fullLinks);
+		}
 		void operator()(Counters& c) { f.number(c); }
 		void operator()(Account& a) { f.number(a); }
 		template <class T> void operator()(std::vector<T>& v)

@@ -8,6 +8,7 @@
 #include "../kernels/automaton/links.hpp"
 #include "../kernels/automaton/outline.hpp"
 #include "fields.hpp"
+#include "pair_rules.hpp"
 #include "sides.hpp"
 #include "vectors.hpp"
 #include <algorithm>
@@ -72,9 +73,11 @@ struct Store : LinkStresses {
 	{
 		return seriesTwoG(materials[species[mine].material].G, materials[species[speciesOf(j)].material].G, q);
 	}
+	PairRules       pairRules; ///< of materials
+	const PairRule& ruleOf(int32_t mine, int32_t other) const { return pairRules.of(species[mine].material, species[other].material); }
 	PairViscosity pairViscosity(int32_t mine, size_t j) const
 	{
-		return viscosityOf(materials[species[mine].material], materials[species[speciesOf(j)].material]);
+		return viscosityOf(materials[species[mine].material], materials[species[speciesOf(j)].material], ruleOf(mine, speciesOf(j)));
 	}
 	const Material& materialOf(const Block& b) const { return materials[species[b.species].material]; }
 	const Material& materialOf(size_t i) const { return materials[species[speciesOf(i)].material]; }

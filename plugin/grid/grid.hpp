@@ -23,6 +23,12 @@ struct Energy {
 	double total() const { return kinetic + internal - (workLoads + workExternal + workConstraints + workViscous); } ///< stays constant
 };
 
+/// Values for the cells of a block, row by row, or none.
+struct CellFields {
+	std::vector<double> pressure, sxx, syy, sxy; ///< of the equation of state; deviator [Pa]; all four or none
+	std::vector<double> eqps, temperature;       ///< [-], [K]
+};
+
 class MCA_API Grid {
 public:
 	explicit Grid(const GridOptions& options = {});
@@ -61,6 +67,9 @@ public:
 	void nodalForce(const std::vector<int>& nodes, const Table& fx, const Table& fy);
 	/// Velocity [m/s] of every node of a block; shared nodes get the mean weighted by mass.
 	void setVelocity(int block, const std::function<std::array<double, 2>(double x, double y)>& v);
+	/// Initial state of the cells of a block, which has not moved; what is empty stays. Cells of a block that is under stress are never asleep. Throws
+	/// Error: another number of values, not finite, above the yield stress, a pressure that the equation of state does not have, or one that heats.
+	void setCells(int block, const CellFields& fields);
 	/// Mass [kg/m] added to an open node, by whoever is tied to it.
 	void addNodeMass(int node, double mass);
 
@@ -134,6 +143,7 @@ private:
 	void                          masses();
 	void                          averageVelocities();
 	void                          restRanges();
+	void                          checkCells(const Block& b, const CellFields& f) const;
 	void                          mustBeBuilt() { if (!built_) build(); }
 	void                          checkNodes(const std::vector<int>& nodes, const char* what) const;
 	const Block&                  checkedBlock(int block, const char* what) const;

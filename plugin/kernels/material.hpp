@@ -6,6 +6,7 @@
 #include "eos.hpp"
 #include <array>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace mca {
@@ -45,6 +46,20 @@ struct Material {
 	double cS() const { return std::sqrt(G / eos.rho0); }
 };
 
+/// What is given for the pairs of two unlike materials (an interface, glue) beside what follows from both.
+struct PairRule {
+	int    first = -1, second = -1;                              ///< places of the materials
+	double strength = 1;                                         ///< factor on the criteria of their links [-]
+	double tension  = std::numeric_limits<double>::infinity();   ///< normal stress at which their links break [Pa]
+	double friction = -1;                                        ///< Coulomb coefficient [-]; below zero: the smaller of both
+	double viscosity = 1;                                        ///< factor on the smaller coefficients of both [-], 0 ... 1
+	bool   names(int a, int b) const { return (a == first && b == second) || (a == second && b == first); }
+};
+inline bool operator==(const PairRule& a, const PairRule& b)
+{
+	return a.first == b.first && a.second == b.second && a.strength == b.strength && a.tension == b.tension && a.friction == b.friction
+		&& a.viscosity == b.viscosity;
+}
 /// f(constant) for every constant, in a fixed order: numbers, EosKind, YieldKind and DamageKind. What saves or compares materials goes by this list.
 template <class M, class F> void eachConstant(M& m, F&& f)
 {

@@ -32,6 +32,7 @@ namespace {
 } // namespace
 
 bool isAutomaton(const shared_ptr<Body>& b) { return b && b->material && castTo<McaMat>(b->material.get()) && castTo<Sphere>(b->shape.get()); }
+bool movesAlone(const shared_ptr<Body>& b) { return isAutomaton(b) && b->clumpId == Body::ID_NONE; }
 
 void refuseBody(const Body& b, const string& what) { throw mca::Error("McaEngine: body " + std::to_string(b.id) + ": " + what); }
 
@@ -62,7 +63,7 @@ int dimensionOf(const Scene& scene)
 {
 	const Body* first = nullptr;
 	for (const auto& b : scene.bodies->body) {
-		if (!isAutomaton(b) || !b->state) continue;
+		if (!movesAlone(b) || !b->state) continue;
 		if (leavesPlane(*b->state)) return 3;
 		if (!first) first = b.get();
 	}
@@ -72,7 +73,7 @@ int dimensionOf(const Scene& scene)
 int dimensionByMass(const Scene& scene)
 {
 	for (const auto& b : scene.bodies->body) {
-		if (!isAutomaton(b) || !b->state) continue;
+		if (!movesAlone(b) || !b->state) continue;
 		if (fits(2, *b) != fits(3, *b)) return fits(3, *b) ? 3 : 2;
 		break;
 	}
@@ -125,7 +126,7 @@ const Body& automatonOf(const Scene& scene, int id, const string& call)
 	const auto refuse = [&](const string& what) { throw std::runtime_error("McaEngine." + call + ": ids: " + what); };
 	if (!scene.bodies->exists(id)) refuse("there is no body " + std::to_string(id) + "; each must be the id of an automaton.");
 	const auto& b = scene.bodies->body[size_t(id)];
-	if (!isAutomaton(b) || !b->state)
+	if (!movesAlone(b) || !b->state)
 		refuse("body " + std::to_string(id) + " is no automaton; it must have material McaMat, shape Sphere and a state.");
 	if (!b->state->se3.position.allFinite()) refuse("the position of body " + std::to_string(id) + " must be finite.");
 	return *b;
@@ -141,11 +142,11 @@ void checkDamage(const Body& b, const McaState& s)
 				+ " has no meaning: the damageModel of its material is 'none'. Set damageModel='johnsonCook', or damage to 0.");
 }
 
-McaBodies::McaBodies(const Scene& scene, int seed, int dimension)
+McaBodies::McaBodies(const Scene& scene, int seed, int dimension, bool acrossMasks)
 {
 	checkNumbers(scene);
 	for (const auto& b : scene.bodies->body)
-		if (isAutomaton(b)) add(*b, seed, dimension);
+		if (movesAlone(b)) add(*b, seed, dimension, acrossMasks);
 }
 
 namespace {
@@ -168,7 +169,7 @@ namespace {
 	}
 } // namespace
 
-void McaBodies::add(const Body& b, int seed, int dimension)
+void McaBodies::add(const Body& b, int seed, int dimension, bool acrossMasks)
 {
 	const auto* m = static_cast<const McaMat*>(b.material.get());
 	if (!b.state) throw mca::Error("body " + std::to_string(b.id) + ": state is None; give it a McaState (material.newAssocState()).");
@@ -199,7 +200,7 @@ void McaBodies::add(const Body& b, int seed, int dimension)
 	for (size_t c = 0; c < 3; c++)
 		a.mirror[c] = (ms->mirrors >> c) & 1;
 	a.id        = b.id;
-	a.group     = b.groupMask;
+	a.group     = groupOf(b.groupMask, acrossMasks);
 	a.free = freeWays(s), a.freeSpin = freeTurns(s);
 	automata.push_back(a);
 	ids.push_back(b.id);

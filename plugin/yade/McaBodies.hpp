@@ -10,6 +10,10 @@ class Scene;
 
 /// Material McaMat and shape Sphere.
 bool isAutomaton(const shared_ptr<Body>& b);
+/// The same, and no member of a clump, which is a rigid body.
+bool movesAlone(const shared_ptr<Body>& b);
+/// Bodies of one group link; across masks: all but those of mask 0.
+inline int groupOf(int mask, bool acrossMasks) { return acrossMasks ? mask != 0 : mask; }
 /// Throws unless every body has the number of its place, as YADE gives it: numbers are used as indices.
 void checkNumbers(const Scene& scene);
 /// Throws mca::Error: what McaEngine cannot take over of a body.
@@ -36,10 +40,10 @@ struct McaBodies {
 	vector<const McaMat*>       known; ///< of materials
 	vector<int>                 ids;
 	/// Throws mca::Error: material out of range, no McaState, mass that is not that of the dimension.
-	McaBodies(const Scene& scene, int seed, int dimension);
+	McaBodies(const Scene& scene, int seed, int dimension, bool acrossMasks);
 
 private:
-	void add(const Body& b, int seed, int dimension);
+	void add(const Body& b, int seed, int dimension, bool acrossMasks);
 };
 /// Place of m in known, appended if need be.
 size_t materialIndex(const McaMat* m, vector<const McaMat*>& known, vector<mca::Material>& materials);

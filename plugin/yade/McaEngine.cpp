@@ -27,9 +27,12 @@ mca::AutomataOptions McaEngine::solverOptions(Scene* scene) const
 	within("dtFactor", dtFactor, 1e-6, 1.);
 	within("volumeFilter", volumeFilter, 0., 1.);
 	within("writePeriod", writePeriod, 0, 2147483647.);
+	within("damping", damping, 0., 0.95);
 	within("gravity x [m/s2]", gravity[0], -1e15, 1e15), within("gravity y [m/s2]", gravity[1], -1e15, 1e15);
 	within("gravityZ [m/s2]", gravityZ, -1e15, 1e15);
-	o.volumeFilter = volumeFilter, o.linkFactor = linkFactor, o.skin = skin, o.sleeping = sleeping, o.contacts = contacts;
+	o.volumeFilter = volumeFilter, o.linkFactor = linkFactor, o.skin = skin, o.sleeping = sleeping, o.contacts = contacts, o.acrossMasks = linkAcrossMasks;
+	if (coupled && damping > 0)
+		throw mca::Error("McaEngine: damping acts on automata only, and the grid that they are tied to would not be damped; set damping = 0.");
 	o.account = account || scene->trackEnergy;
 	return o;
 }
@@ -46,6 +49,7 @@ void McaEngine::takeOptions(Scene* scene)
 				+ " was changed after the bodies were gathered, when it is read; set it back, or make a new engine with new bodies.");
 	};
 	kept("volumeRule", now.volumeRule == mine.volumeRule), kept("linkFactor", now.linkFactor == mine.linkFactor);
+	kept("linkAcrossMasks", now.acrossMasks == mine.acrossMasks);
 	kept("sleeping", now.sleeping == mine.sleeping), kept("contacts", now.contacts == mine.contacts);
 	if (now.skin != mine.skin) solver->searchAnew();
 	mine.skin = now.skin, mine.volumeFilter = now.volumeFilter;
@@ -94,15 +98,15 @@ void McaEngine::checkScene(Scene* scene) const
 void McaEngine::readExternal(Scene* scene)
 {
 	const Vector3r g = acceleration();
-	const bool     loads = !loadRows.empty();
+	const bool     loaded = !loadRows.empty();
 	if (dimension == 2 && gravityZ != 0) throw mca::Error("McaEngine: gravityZ is for bodies in space; these are in plane strain: set it to 0.");
-	if (!readForces && g == Vector3r::Zero() && !loads) {
+	if (!readForces && g == Vector3r::Zero() && !loaded) {
 		if (solver->hasForces()) solver->clearForces();
 		return;
 	}
 	solver->clearForces();
 	if (g != Vector3r::Zero()) solver->addGravity(triple(g));
-	if (loads) pushLoads(*scene);
+	if (loaded) pushLoads(*scene);
 	if (!readForces) return;
 	scene->forces.sync();
 	for (int id : order) {
@@ -126,6 +130,7 @@ void McaEngine::computeForces(Scene* scene)
 	ensureBuilt(scene);
 	if (check) checkScene(scene), gatherWalls(scene);
 	looked = false; // a refusal above is asked again by the next step
+	if (!loadRows.empty()) heatLoads(*scene);
 	if (!forcesReady) { // not twice when something has stopped the step half-way: stresses would grow twice
 		stale = true;
 		solver->computeForces();
@@ -133,6 +138,9 @@ void McaEngine::computeForces(Scene* scene)
 	forcesReady = true;
 	readExternal(scene);
 	pushWalls(scene->dt);
+	if (damping == 0) return;
+	if (coupled || !(damping > 0 && damping <= 0.95)) solverOptions(scene); // refuses it
+	solver->resist(damping); // of all forces
 }
 
 void McaEngine::forget()

@@ -5,6 +5,7 @@
 #include "automata/automata.hpp"
 #include <boost/weak_ptr.hpp>
 #include <functional>
+#include <grid/boundary.hpp>
 #include <sdk/Blob.hpp>
 #include <core/Timing.hpp>
 
@@ -53,7 +54,11 @@ public:
 	void       setViscous(const vector<int>& ids, const py::object& normal);
 	void       prescribe(const vector<int>& ids, py::object x, py::object y, py::object z);
 	void       push(const vector<int>& ids, py::object x, py::object y, py::object z);
+	void       prescribeTemperature(const vector<int>& ids, py::object temperature);
+	void       press(const vector<int>& ids, py::object pressure);
 	void       clearLoads();
+	void       setStress(const vector<int>& ids, py::object stress);
+	void       setPair(py::object first, py::object second, Real strength, Real pairStrength, py::object frictionAngle, Real viscosity);
 	long       automataCount() const;
 	py::object momentum();
 
@@ -75,7 +80,9 @@ public:
 		"Automata touch every wall, box, facet and sphere of another material, alone or in a clump, whose mask is not 0 (12b): a penalty of the "
 		"automaton's moduli with the smaller friction of both. What such a body gets goes to O.forces, per m of thickness in plane strain, and "
 		"whatever YADE has moves it (NewtonIntegrator with a mask that no automaton has, TranslationEngine before it). With readForces and an "
-		"InteractionLoop that loop has them. Clumps of automata, other shapes, and rigid bodies in a scene coupled to a grid are refused.",
+		"InteractionLoop that loop has them. Members of a clump are rigid whatever their material: a clump of automata is such a body. Other "
+		"shapes, and "
+		"rigid bodies in a scene coupled to a grid, are refused.",
 		((string, volumeRule, "affine", , "'affine' (default: J = det F of the links, exact in any homogeneous deformation), 'inversePower' (density "
 		    "from the mean of (d/r)^2) or 'meanDistance' (as published; its lattice buckles under strong plastic compression); in space 'affine' only. "
 		    "Read when bodies are gathered; a later change is refused"))
@@ -84,6 +91,12 @@ public:
 		((Real, skin, 0.4, , "range of the contact search beyond touching, in diameters [-], 0.05 ... 1. Read at every look"))
 		((Real, volumeFilter, 0.1, , "rate at which stripes of volume (alternate rows) fade in flowing material, in c0/d [-]; 0 ... 1, 0: off. They "
 		    "cost no force, so nothing else takes them away; affine rule. Read at every look"))
+		((bool, linkAcrossMasks, false, , "bodies of different masks link, too; else a mask is a body of its own that meets others as contacts. Read "
+		    "when bodies are gathered; a later change is refused"))
+		((Real, damping, 0, , "as in NewtonIntegrator: the share of each component of force and torque that is taken away where it drives the "
+		    "motion and "
+		    "added where it slows it down [-], 0 (default: none) ... 0.95. Not physics: a way to a state of rest, see equilibrium.relax(). Its work is "
+		    "in 'external'; refused in a scene coupled to a grid. Read in every step"))
 		((bool, sleeping, true, , "leave out regions that nothing has reached; changes no result. Read when bodies are gathered; a later change is "
 		    "refused"))
 		((bool, contacts, true, , "search for contacts. Read when bodies are gathered; a later change is refused"))
@@ -108,9 +121,14 @@ public:
 		    "along x and y [kg/(m s)]"))
 		((vector<int>, wallPairs, , Attr::hidden, "automaton and wall of each contact with one that has held a shear force, for the file"))
 		((vector<Vector3r>, wallShears, , Attr::hidden, "that force on the automaton [N/m, in space N]"))
-		((vector<Vector3r>, loadRows, , Attr::hidden, "of prescribe() and push(): what and where, number of bodies, number of points of the table"))
+		((vector<shared_ptr<Material>>, pairMaterials, , Attr::hidden, "of setPair(): two materials each"))
+		((vector<Real>, pairNumbers, , Attr::hidden, "of setPair(): strength, pairStrength [Pa], friction (-1: not given) and viscosity each"))
+		((vector<Vector3r>, loadRows, , Attr::hidden, "of prescribe(), push(), prescribeTemperature() and press(): what and where, number of "
+		    "bodies, number "
+		    "of points of the table"))
 		((vector<int>, loadIds, , Attr::hidden, "bodies of all of them"))
-		((vector<Vector2r>, loadPoints, , Attr::hidden, "points of their tables: time [s] and velocity [m/s] or force [N/m, in space N]"))
+		((vector<Vector2r>, loadPoints, , Attr::hidden, "points of their tables: time [s] and velocity [m/s], force [N/m, in space N], temperature "
+		    "[K] or pressure [Pa]"))
 		((vector<Real>, viscousZ, , Attr::hidden, "coefficients along z of the same [kg/s]"))
 		,
 		timingDeltas = shared_ptr<TimingDeltas>(new TimingDeltas);
@@ -146,7 +164,40 @@ public:
 		.def("push", &McaEngine::push, (py::arg("ids"), py::arg("x") = py::object(), py::arg("y") = py::object(), py::arg("z") = py::object()), "Put "
 		    "forces [N/m, in space N] on each of these bodies: each of x, y, z as in prescribe(). Several on one body add up. The work is in "
 		    "'external'.")
-		.def("clearLoads", &McaEngine::clearLoads, "Forget all of prescribe() and push(). Degrees of freedom stay blocked, with their last velocity.")
+		.def("prescribeTemperature", &McaEngine::prescribeTemperature, (py::arg("ids"), py::arg("temperature")), "Prescribe the temperature [K] of "
+		    "these "
+		    "bodies: a number, or a pair (times, values) as in prescribe(), above 0. It stands in state.temperature and softens flow stresses that "
+		    "depend on it; what plastic flow heats is overwritten in every step, and no heat is conducted. Raises RuntimeError as prescribe().")
+		.def("press", &McaEngine::press, (py::arg("ids"), py::arg("pressure")), "Put a pressure [Pa] on the free side of these bodies: a number, or a "
+		    "pair (times, values) as in prescribe(); negative pulls. It acts along the surface as it lies now: with the ids of a whole body its work "
+		    "is minus the pressure times the change of the body's volume. Bodies inside a body feel nothing where it is strained evenly, a corner "
+		    "that is named feels both of its sides, and what has lost its links' volume feels nothing. The work is in 'external'. Raises "
+		    "RuntimeError as "
+		    "prescribe().")
+		.def("clearLoads", &McaEngine::clearLoads, "Forget all of prescribe(), push(), prescribeTemperature() and press(). Degrees of freedom stay "
+		    "blocked, "
+		    "with their last velocity.")
+		.def("setStress", &McaEngine::setStress, (py::arg("ids"), py::arg("stress")), "Put a stress [Pa], positive in tension, into these bodies as "
+		    "they lie "
+		    "now (initial or residual stress): numpy or lists (N, 3) xx, yy, xy in plane strain, where zz follows from Hooke's law, or (N, 4) with zz, "
+		    "and (N, 6) xx, yy, zz, yz, zx, xy in space; one row for all will do. Nobody moves: the state of rest of each body changes, its mass "
+		    "does not, and its "
+		    "volumeRatio becomes that of the pressure. Corners with too few links for a volume get the deviator alone. What is out of balance "
+		    "afterwards moves: equilibrium.relax() leads it to rest. The energy "
+		    "put in is in 'left'. Raises RuntimeError above the yield stress, for pressures that the "
+		    "equation of state does not have, for numbers that are not finite or too few.")
+		.def("setPair", &McaEngine::setPair, (py::arg("material1"), py::arg("material2"), py::arg("strength") = 1.,
+		    py::arg("pairStrength") = std::numeric_limits<Real>::infinity(), py::arg("frictionAngle") = py::object(), py::arg("viscosity") = 1.),
+		    "What holds between two materials (McaMat), in place of what "
+		    "follows from "
+		    "both: weak interfaces, glue. strength [-]: factor on all fracture criteria of their links (0.1: they break at a tenth); pairStrength "
+		    "[Pa]: normal "
+		    "stress at which links break, beside the criteria of both; frictionAngle [rad]: of their contacts, None: the smaller of both; viscosity "
+		    "[-]: factor on the smaller viscosity of both, 0 ... 1. Glue within one body: give its two sides two materials of the same constants. "
+		    "Counts from the next "
+		    "step on, replaces an earlier rule of the same two, and is saved. Raises RuntimeError for what is no McaMat, for twice the same "
+		    "material and "
+		    "for numbers out of range.")
 		.def("links", &McaEngine::linkList, "Pairs of body ids whose link holds, list of (id1, id2).")
 		.def("cut", &McaEngine::cut, (py::arg("pairs")), "Break these links (list of (id1, id2), as links() gives them) at the start of the next step, "
 		    "as fracture does: no stress passes that pulls, pressure and friction do; the energy is booked as fracture. Returns how many of them hold. "
@@ -217,13 +268,23 @@ private:
 	bool              wallsAreOthers(const Scene&) const;
 	static bool       mayBeTouched(const Body& b);
 	mca::WallStart    wallOf(const Scene&, const Body&) const;
-	template <class F> void eachLoad(F&& f) const;
+	/// One of prescribe(), push(), prescribeTemperature() and press(); of kind and axis the first number of a row tells.
+	struct Load {
+		int              kind, axis;
+		vector<int>      ids;
+		mca::grid::Table table;
+	};
+	vector<Load>      loads; ///< as loadRows, loadIds and loadPoints say
+	vector<Load>      loadList() const;
 	void              load(int kind, const vector<int>& ids, const py::object (&along)[3], const char* call);
 	void              dropLoads(const std::function<bool(int)>& goes);
 	void              forgetLoads();
 	void              pushLoads(const Scene&);
 	void              driveLoads(const Scene&);
+	void              heatLoads(const Scene&);
 	void              checkLoads(const mca::Automata& of) const;
+	bool              isDriven(int id, int axis) const; ///< by prescribe()
+	void              givePairRules();
 	void              gatherWalls(Scene* scene);
 	void              pushWalls(Real lastStep);
 	void              tellWalls(Scene* scene);

@@ -3,6 +3,7 @@
 #include "McaBodies.hpp"
 #include "McaCast.hpp"
 #include "McaEngine.hpp"
+#include "McaPairRules.hpp"
 #include "McaVec.hpp"
 #include <core/Omega.hpp>
 #include <pkg/common/Sphere.hpp>
@@ -87,7 +88,7 @@ void McaEngine::bind(Scene* scene)
 				"McaEngine: body " + std::to_string(id)
 				+ " stands in the saved engine's list, but not in its state; the file is damaged or was changed.");
 		found.push_back(scene->bodies->exists(id) ? scene->bodies->body[size_t(id)] : nullptr); // erased since it was loaded
-		if (found.back() && (!isAutomaton(found.back()) || !castTo<McaState>(found.back()->state.get())))
+		if (found.back() && (!movesAlone(found.back()) || !castTo<McaState>(found.back()->state.get())))
 			throw mca::Error(
 				"McaEngine: the saved engine moves body " + std::to_string(id)
 				+ ", which is no automaton (material McaMat, shape Sphere, state McaState); the file is damaged, or the body was changed since "
@@ -100,6 +101,7 @@ void McaEngine::bind(Scene* scene)
 	same.assign(order.size(), Same());
 	for (size_t q = 0; q < order.size(); q++)
 		takeConstants(q), takeResults(q);
+	givePairRules();
 	looked = true;
 	if (!bodiesSaved) writeBodies(scene);
 }
@@ -109,12 +111,24 @@ Vector3r McaEngine::place(const mca::AutomatonNow& a, const State& s) const
 	return Vector3r(a.position[0], a.position[1], dimension == 2 ? s.se3.position[2] : a.position[2]);
 }
 
+/// Of the materials that its bodies have.
+void McaEngine::givePairRules()
+{
+	vector<const Material*> materials;
+	for (const auto& m : known) materials.push_back(m.get());
+	solver->setPairRules(pairRulesOf(pairMaterials, pairNumbers, materials));
+	for (const auto& m : pairMaterials)
+		if (std::find(materials.begin(), materials.end(), m.get()) == materials.end())
+			LOG_WARN("McaEngine.setPair: no automaton has the material '" << m->label << "' now; its rule waits for one.");
+}
+
 /// What is read when a body is taken over.
 void McaEngine::takeConstants(size_t q)
 {
 	const mca::AutomatonFixed a = solver->fixed(order[q]);
 	Same&                     was = same[q];
-	was.mass = a.mass, was.inertia = a.inertia, was.radius = 0.5 * a.diameter, was.strength = a.strength, was.mask = a.group;
+	was.mass = a.mass, was.inertia = a.inertia, was.radius = 0.5 * a.diameter, was.strength = a.strength;
+	was.mask     = linkAcrossMasks && bodies[q] ? bodies[q]->groupMask : a.group;
 	was.material = known[size_t(a.material)].get();
 	if (!bodies[q]) return;
 	was.state = bodies[q]->state, was.shape = bodies[q]->shape;
@@ -144,15 +158,10 @@ void McaEngine::checkBodies(const Scene& scene, int dimensionNow) const
 {
 	for (const auto& b : scene.bodies->body) {
 		if (!b) continue;
-		const bool automaton = b->material && castTo<McaMat>(b->material.get()) && b->shape && castTo<Sphere>(b->shape.get());
-		if (!automaton) {
+		if (!movesAlone(b)) {
 			if (!wallsAreOthers(scene) && mayBeTouched(*b)) wallOf(scene, *b); // refuses what they cannot touch
 			continue;
 		}
-		if (b->clumpId != Body::ID_NONE)
-			throw mca::Error(
-				"McaEngine: body " + std::to_string(b->id)
-				+ " belongs to a clump, whose motion automata cannot follow; append it without O.bodies.appendClumped.");
 		if (!b->state || !castTo<McaState>(b->state.get()))
 			throw mca::Error(
 				"McaEngine: body " + std::to_string(b->id)
@@ -176,7 +185,7 @@ void McaEngine::gather(Scene* scene)
 	std::unordered_set<const Body*> mine;
 	for (const auto& b : bodies)
 		if (b) mine.insert(b.get());
-	McaBodies now(*scene, seed, dimensionNow);
+	McaBodies now(*scene, seed, dimensionNow, linkAcrossMasks);
 	vector<shared_ptr<Body>> list;
 	for (auto& a : now.automata) {
 		const auto& b = scene->bodies->body[size_t(a.id)];
@@ -218,6 +227,7 @@ void McaEngine::gather(Scene* scene)
 			}
 	for (size_t k = 0; k < viscous.size(); k++)
 		if (solver->holds(int(viscous[k][0]))) solver->setDamping(int(viscous[k][0]), { viscous[k][1], viscous[k][2], viscousZ[k] });
+	givePairRules();
 	same.assign(order.size(), Same());
 	for (size_t q = 0; q < order.size(); q++)
 		takeConstants(q);

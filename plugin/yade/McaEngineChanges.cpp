@@ -101,7 +101,7 @@ bool McaEngine::sameBodies(const Scene& scene) const
 			if (int(k) != order[q]) return false;
 			q++;
 		} else if (b->material.get() != foreign || !foreign) {
-			if (isAutomaton(b)) return false;
+			if (movesAlone(b)) return false;
 			const auto* m = b->material.get();
 			foreign       = m && castTo<const McaMat>(m) ? nullptr : m;
 		}
@@ -138,7 +138,7 @@ vector<McaEngine::Change> McaEngine::changes(bool& rebuild)
 McaEngine::Change McaEngine::changeOf(size_t q, bool& rebuild)
 {
 	const Body& b = *bodies[q];
-	if (!isAutomaton(bodies[q])) refuseBody(b, "it is an automaton no more (its material or shape was replaced); erase it and add another body instead.");
+	if (!movesAlone(bodies[q])) refuseBody(b, "it is an automaton no more (its material or shape was replaced); erase it and add another body instead.");
 	const auto* m = b.state ? castTo<const McaState>(b.state.get()) : nullptr;
 	if (!m) refuseBody(b, "its state was replaced by one that is no McaState; make it with material.newAssocState().");
 	const McaState& s    = *m;
@@ -164,6 +164,11 @@ McaEngine::Change McaEngine::changeOf(size_t q, bool& rebuild)
 	if (c.position || c.velocity || c.spin || c.angle) checkMotion(b, dimension);
 	if (tied && (c.position || c.velocity))
 		refuseBody(b, "it is tied to a grid, which moves it; its position and velocity cannot be set. Set those of the grid before the first step.");
+	for (int k = 0; c.velocity && k < dimension; k++)
+		if (s.vel[k] != was.vel[k] && isDriven(b.id, k))
+			refuseBody(
+				b, string("state.vel along ") + "xyz"[k] + " was set to " + numberText(s.vel[k])
+					+ " m/s, and prescribe() drives it there: prescribe() another velocity, or clearLoads() first.");
 	if (c.plasticStrain && !(s.plasticStrain >= 0 && s.plasticStrain <= 1e6))
 		refuseBody(b, "state.plasticStrain = " + numberText(s.plasticStrain) + " must be from 0 to 1e6.");
 	if (c.damage) checkDamage(b, s);
@@ -217,7 +222,7 @@ void McaEngine::apply(const vector<Change>& list)
 		if (c.damage) to.damage = now.damage = s.damage;
 		if (c.temperature) to.temperature = now.temperature = s.temperature;
 		if (c.strength) to.strength = now.strength = s.strength;
-		if (c.mask) to.group = now.mask = b.groupMask;
+		if (c.mask) now.mask = b.groupMask, to.group = groupOf(b.groupMask, linkAcrossMasks);
 		if (c.blocked) now.blocked = s.blockedDOFs, to.free = freeWays(s), to.freeSpin = freeTurns(s);
 		solver->set(order[c.place], to);
 	}
@@ -241,7 +246,7 @@ void McaEngine::adoptChanges(Scene* scene)
 	for (const auto& b : bodies)
 		mine.insert(b.get());
 	const bool joined = std::any_of(
-		scene->bodies->body.begin(), scene->bodies->body.end(), [&](const shared_ptr<Body>& b) { return isAutomaton(b) && !mine.count(b.get()); });
+		scene->bodies->body.begin(), scene->bodies->body.end(), [&](const shared_ptr<Body>& b) { return movesAlone(b) && !mine.count(b.get()); });
 	if ((joined || rebuild) && !forcesReady) solver->computeForces();
 	if (stale) writeBodies(scene);             // the others are gathered from what they hold
 	gather(scene);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// McaEngine: velocities and forces that scripts prescribe as tables of time.
+// McaEngine: velocities, forces, temperatures and pressures that scripts prescribe as tables of time.
 #include "McaBodies.hpp"
 #include "McaEngine.hpp"
 #include "McaTables.hpp"
@@ -12,45 +12,35 @@ using mca::grid::Table;
 
 namespace {
 	constexpr unsigned dofs[] = { State::DOF_X, State::DOF_Y, State::DOF_Z };
-	constexpr int      velocityOf = 0, forceOf = 1; ///< kinds
-
-	/// Where the numbers of a load stand: kind * 3 + axis, number of bodies, number of points.
-	struct LoadRow {
-		int kind, axis;
-		long bodies, points;
-		explicit LoadRow(const Vector3r& v) : kind(int(v[0]) / 3), axis(int(v[0]) % 3), bodies(long(v[1])), points(long(v[2])) { }
-	};
-	Table tableAt(const vector<Vector2r>& points, long first, long n)
-	{
-		Table t;
-		for (long k = first; k < first + n; k++) t.time.push_back(points[size_t(k)][0]), t.value.push_back(points[size_t(k)][1]);
-		return t;
-	}
+	constexpr int      velocityOf = 0, forceOf = 1, temperatureOf = 2, pressureOf = 3, kinds = 4;
+	constexpr Real     coldest = 0, hottest = 1e9; ///< [K]
 } // namespace
 
-/// f(row, its bodies' first place in loadIds, its table) for all loads.
-template <class F> void McaEngine::eachLoad(F&& f) const
+/// Of what is saved.
+vector<McaEngine::Load> McaEngine::loadList() const
 {
-	long id = 0, point = 0;
+	vector<Load> list;
+	size_t       id = 0, point = 0;
 	for (const Vector3r& v : loadRows) {
-		const LoadRow row(v);
-		f(row, id, tableAt(loadPoints, point, row.points));
-		id += row.bodies, point += row.points;
+		Load l { int(v[0]) / 3, int(v[0]) % 3, {}, {} };
+		for (long k = 0; k < long(v[1]); k++) l.ids.push_back(loadIds[id++]);
+		for (long k = 0; k < long(v[2]); k++, point++)
+			l.table.time.push_back(loadPoints[point][0]), l.table.value.push_back(loadPoints[point][1]);
+		list.push_back(l);
 	}
+	return list;
 }
 
 /// Bodies that are gone take their loads along.
 void McaEngine::dropLoads(const std::function<bool(int)>& goes)
 {
-	vector<int>      ids;
-	vector<Vector3r> rows;
-	eachLoad([&](const LoadRow& row, long first, const Table&) {
-		const size_t before = ids.size();
-		for (long k = first; k < first + row.bodies; k++)
-			if (!goes(loadIds[size_t(k)])) ids.push_back(loadIds[size_t(k)]);
-		rows.push_back(Vector3r(Real(row.kind * 3 + row.axis), Real(ids.size() - before), Real(row.points)));
-	});
-	loadIds.swap(ids), loadRows.swap(rows);
+	loadIds.clear();
+	for (size_t q = 0; q < loads.size(); q++) {
+		auto& ids = loads[q].ids;
+		ids.erase(std::remove_if(ids.begin(), ids.end(), goes), ids.end());
+		loadRows[q][1] = Real(ids.size());
+		loadIds.insert(loadIds.end(), ids.begin(), ids.end());
+	}
 }
 
 void McaEngine::load(int kind, const vector<int>& ids, const py::object (&along)[3], const char* call)
@@ -59,9 +49,16 @@ void McaEngine::load(int kind, const vector<int>& ids, const py::object (&along)
 	if (ids.empty()) throw mca::Error(where + "ids names no body; give the id of at least one automaton.");
 	Table        tables[3];
 	bool         given[3];
+	const bool   along3 = kind == velocityOf || kind == forceOf; // else a scalar, which stands first
+	const char*  scalar = kind == temperatureOf ? "temperature [K]" : "pressure [Pa]";
 	for (int c = 0; c < 3; c++)
-		if ((given[c] = !along[c].is_none())) tables[c] = tableOf(along[c], (where + char('x' + c)).c_str());
-	if (!(given[0] || given[1] || given[2])) throw mca::Error(where + "give at least one of x, y, z: a number or a pair (times, values).");
+		if ((given[c] = !along[c].is_none()))
+			tables[c] = tableOf(along[c], (where + (along3 ? string(1, char('x' + c)) : scalar)).c_str());
+	if (!(given[0] || given[1] || given[2]))
+		throw mca::Error(where + (along3 ? string("give at least one of x, y, z") : string(scalar) + " is missing") + ": a number or a pair (times, "
+		    "values).");
+	for (Real T : kind == temperatureOf ? tables[0].value : std::vector<double>())
+		if (!(T > coldest && T <= hottest)) throw mca::Error(where + "temperature = " + numberText(T) + " K must be above 0 and at most 1e9.");
 	locked([&] {
 		const auto scene = Omega::instance().getScene();
 		settleIn(scene.get());
@@ -80,37 +77,62 @@ void McaEngine::load(int kind, const vector<int>& ids, const py::object (&along)
 			loadIds.insert(loadIds.end(), ids.begin(), ids.end());
 			for (size_t k = 0; k < tables[c].time.size(); k++) loadPoints.push_back(Vector2r(tables[c].time[k], tables[c].value[k]));
 		}
+		loads  = loadList();
 		looked = true; // blockedDOFs
 	});
 }
 
 void McaEngine::prescribe(const vector<int>& ids, py::object x, py::object y, py::object z) { load(velocityOf, ids, { x, y, z }, "prescribe"); }
 void McaEngine::push(const vector<int>& ids, py::object x, py::object y, py::object z) { load(forceOf, ids, { x, y, z }, "push"); }
+void McaEngine::prescribeTemperature(const vector<int>& ids, py::object T) { load(temperatureOf, ids, { T, {}, {} }, "prescribeTemperature"); }
+void McaEngine::press(const vector<int>& ids, py::object pressure) { load(pressureOf, ids, { pressure, {}, {} }, "press"); }
 void McaEngine::clearLoads()
 {
 	locked([&] { forgetLoads(); });
 }
 
-void McaEngine::forgetLoads() { loadRows.clear(), loadIds.clear(), loadPoints.clear(); }
+void McaEngine::forgetLoads() { loadRows.clear(), loadIds.clear(), loadPoints.clear(), loads.clear(); }
 
 /// Forces at the time of the present positions.
 void McaEngine::pushLoads(const Scene& scene)
 {
-	eachLoad([&](const LoadRow& row, long first, const Table& table) {
-		if (row.kind != forceOf) return;
+	for (const Load& l : loads) {
+		if (l.kind != forceOf && l.kind != pressureOf) continue;
+		const Real  now = l.table.at(scene.time);
 		mca::Triple force {};
-		force[size_t(row.axis)] = table.at(scene.time);
-		for (long k = first; k < first + row.bodies; k++) solver->addForce(loadIds[size_t(k)], force, {});
-	});
+		force[size_t(l.axis)] = now;
+		if (l.kind == forceOf)
+			for (int id : l.ids) solver->addForce(id, force, {});
+		else if (now != 0)
+			for (int id : l.ids) solver->addPressure(id, now);
+	}
+}
+
+/// Temperatures with which the stresses of this step are found.
+void McaEngine::heatLoads(const Scene& scene)
+{
+	mca::AutomatonChange to;
+	for (const Load& l : loads) {
+		if (l.kind != temperatureOf) continue;
+		to.temperature = l.table.at(scene.time);
+		for (int id : l.ids) solver->set(id, to);
+	}
 }
 
 /// Velocities of this step: those in its middle, so that the way is that of the table where it is straight.
 void McaEngine::driveLoads(const Scene& scene)
 {
-	eachLoad([&](const LoadRow& row, long first, const Table& table) {
-		if (row.kind != velocityOf) return;
-		const Real v = table.at(scene.time + 0.5 * scene.dt);
-		for (long k = first; k < first + row.bodies; k++) solver->drive(loadIds[size_t(k)], row.axis, v);
+	for (const Load& l : loads) {
+		if (l.kind != velocityOf) continue;
+		const Real v = l.table.at(scene.time + 0.5 * scene.dt);
+		for (int id : l.ids) solver->drive(id, l.axis, v);
+	}
+}
+
+bool McaEngine::isDriven(int id, int axis) const
+{
+	return std::any_of(loads.begin(), loads.end(), [&](const Load& l) {
+		return l.kind == velocityOf && l.axis == axis && std::find(l.ids.begin(), l.ids.end(), id) != l.ids.end();
 	});
 }
 
@@ -121,12 +143,15 @@ void McaEngine::checkLoads(const mca::Automata& of) const
 	bool good = true;
 	for (const Vector3r& v : loadRows) {
 		for (int c = 0; c < 3; c++) good &= v[c] >= (c == 2 ? 1 : 0) && v[c] < 1e9 && v[c] == std::floor(v[c]);
-		good &= good && v[0] < 6 && int(v[0]) % 3 < of.dimension();
+		good &= good && v[0] < 3 * kinds && int(v[0]) % 3 < (v[0] < 3 * temperatureOf ? of.dimension() : 1);
 		ids += v[1], points += v[2];
 	}
 	good &= ids == Real(loadIds.size()) && points == Real(loadPoints.size());
 	for (int id : loadIds) good &= of.holds(id);
-	if (good) eachLoad([](const LoadRow&, long, const Table& t) { t.validate("a prescribed velocity or force"); });
+	for (const Load& l : good ? loadList() : vector<Load>()) {
+		l.table.validate("a prescribed velocity, force, temperature or pressure");
+		for (Real T : l.table.value) good &= l.kind != temperatureOf || (T > coldest && T <= hottest);
+	}
 	if (!good) throw mca::Error("McaEngine: the prescribed velocities and forces in the file are none; the file is damaged or was edited.");
 }
 } // namespace yade

@@ -2,6 +2,7 @@
 // McaEngine: what it writes to bodies and files and shows to Python.
 #include "McaBodies.hpp"
 #include "McaEngine.hpp"
+#include "McaPairRules.hpp"
 #include "McaVec.hpp"
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
@@ -83,8 +84,9 @@ void McaEngine::postLoad(McaEngine&)
 	if (dimension != 2 && dimension != 3) throw mca::Error("McaEngine: dimension in the file is neither 2 nor 3; the file is damaged or was edited.");
 	shared_ptr<mca::Automata> fresh(mca::automataIn(dimension));
 	fresh->load(string(bytes.begin(), bytes.end()));
-	checkLoaded(*fresh, order, viscous, viscousZ), loadWalls(*fresh), checkLoads(*fresh);
+	checkLoaded(*fresh, order, viscous, viscousZ), loadWalls(*fresh), checkLoads(*fresh), checkPairRules(pairMaterials, pairNumbers, "McaEngine");
 	solver = fresh;
+	loads  = loadList();
 	home.reset(), letGo(bodies, same, known, walls), wallStarts.clear();
 	looked = true, stale = false;
 	state.clear();
@@ -152,6 +154,8 @@ py::dict McaEngine::energies()
 	d["bookedVolumetric"] = a.bookedVolumetric, d["bookedDeviatoric"] = a.bookedDeviatoric, d["bookedViscous"] = a.bookedViscous,
 	d["kineticStart"] = a.kineticStart;
 	putVector(d, "momentum", a.momentum, dimension), putVector(d, "impulse", a.impulse, dimension);
+	d["leftMass"] = a.leftMass, d["leftKinetic"] = a.leftKinetic, d["leftVolumetric"] = a.leftVolumetric, d["leftDeviatoric"] = a.leftDeviatoric;
+	putVector(d, "leftMomentum", a.leftMomentum, dimension);
 	if (dimension == 2) d["angularMomentum"] = a.angular[2];
 	else putVector(d, "angularMomentum", a.angular, dimension);
 	return d;
@@ -202,6 +206,78 @@ long McaEngine::cut(py::object pairs)
 {
 	const auto list = idPairs(pairs, "McaEngine.cut");
 	return long(read("cut", [&] { return solver->cut(list); }));
+}
+
+void McaEngine::setPair(py::object first, py::object second, Real strength, Real pairStrength, py::object frictionAngle, Real viscosity)
+{
+	auto materials = pairMaterials; // nothing changes where something is refused
+	auto numbers   = pairNumbers;
+	addPairRule(materials, numbers, "McaEngine.setPair", first, second, strength, pairStrength, frictionAngle, viscosity);
+	locked([&] {
+		pairMaterials.swap(materials), pairNumbers.swap(numbers);
+		if (solver && !bodies.empty()) givePairRules();
+	});
+}
+
+namespace {
+	/// Rows of 3, 4 or 6 numbers, or one of them; under Python's lock.
+	vector<vector<Real>> stressRows(const py::object& given, size_t bodies)
+	{
+		vector<vector<Real>> rows;
+		try {
+			const py::object a    = py::import("numpy").attr("atleast_2d")(py::import("numpy").attr("asarray")(given, "float64"));
+			const py::object list = a.attr("tolist")();
+			for (long n = 0; n < py::len(list); n++) {
+				rows.emplace_back();
+				for (long c = 0; c < py::len(list[n]); c++) rows.back().push_back(py::extract<Real>(list[n][c]));
+			}
+		} catch (const py::error_already_set&) {
+			PyErr_Clear();
+			rows.clear();
+		}
+		if (rows.size() == 1) rows.resize(bodies, rows[0]);
+		const bool many = rows.size() == bodies && !rows.empty();
+		for (const auto& row : rows)
+			for (Real v : row)
+				if (!std::isfinite(v))
+					throw mca::Error("McaEngine.setStress: stress [Pa] must be finite numbers; one is " + numberText(v) + ".");
+		if (!many || rows[0].size() < 3)
+			throw mca::Error("McaEngine.setStress: stress must be one row of numbers [Pa] for all bodies, or one for each of the "
+			                 + std::to_string(bodies) + ": xx, yy, xy (and zz) in plane strain, xx, yy, zz, yz, zx, xy in space.");
+		return rows;
+	}
+	/// Stress of a row; nu: Poisson's ratio, for zz of plane strain.
+	mca::SplitStress stressOf(const vector<Real>& row, int dimension, Real nu)
+	{
+		if (dimension == 3) return mca::SplitStress({ row[0], row[1], row[2], row[3], row[4], row[5] });
+		return mca::SplitStress({ row[0], row[1], row.size() == 4 ? row[3] : nu * (row[0] + row[1]), 0., 0., row[2] });
+	}
+} // namespace
+
+void McaEngine::setStress(const vector<int>& ids, py::object stress)
+{
+	if (ids.empty()) throw mca::Error("McaEngine.setStress: ids names no body; give the id of at least one automaton.");
+	const auto rows = stressRows(stress, ids.size());
+	read("setStress", [&] {
+		for (int id : ids) automatonOf(*home.lock(), id, "setStress");
+		const size_t n = rows[0].size();
+		if (dimension == 3 ? n != 6 : n > 4)
+			throw mca::Error("McaEngine.setStress: stress has rows of " + std::to_string(n) + " numbers; they must be "
+			                 + (dimension == 3 ? "6: xx, yy, zz, yz, zx, xy." : "3 or 4: xx, yy, xy (and zz)."));
+		if (!forcesReady) stale = true, solver->computeForces(); // the strain of the last step belongs to the state before
+		const auto each = [&](auto&& f) {
+			for (size_t q = 0; q < ids.size(); q++) {
+				const mca::Material& m = solver->materials()[size_t(solver->fixed(ids[q]).material)];
+				const Real           K = m.eos.bulkModulus(), nu = (3 * K - 2 * m.G) / (2 * (3 * K + m.G));
+				f(ids[q], stressOf(rows[q], dimension, nu));
+			}
+		};
+		each([&](int id, const mca::SplitStress& s) { solver->checkStress(id, s.pressure, s.deviator); }); // all, before any is changed
+		each([&](int id, const mca::SplitStress& s) { solver->setStress(id, s.pressure, s.deviator); });
+		solver->moved();
+		forcesReady = false, stale = true;
+		writeBodies(home.lock().get());
+	});
 }
 
 py::dict McaEngine::brokenLinks()

@@ -6,6 +6,7 @@
 #include "McaEngine.hpp"
 #include "McaVec.hpp"
 #include <core/Omega.hpp>
+#include <map>
 #include <core/Scene.hpp>
 #include <pkg/common/ElastMat.hpp>
 #include <pkg/common/Sphere.hpp>
@@ -117,16 +118,32 @@ mca::WallStart McaEngine::wallOf(const Scene& scene, const Body& b) const
 	return w;
 }
 
+namespace {
+	/// YADE makes the mass of a clump from the volumes of spheres, which in plane strain is not per m of thickness. members: their masses in all.
+	void checkClump(const Scene& scene, int id, Real members)
+	{
+		const auto& clump = scene.bodies->body[size_t(id)];
+		if (!clump || !clump->state || clump->state->blockedDOFs == State::DOF_ALL || clump->state->mass >= 0.5 * members) return;
+		refuseBody(
+			*clump,
+			"it is a clump of automata with a mass of " + numberText(clump->state->mass) + ", and that of its members is " + numberText(members)
+				+ ": YADE takes the volume of spheres. Make it with packings.clump(ids), or set its state.mass and state.inertia.");
+	}
+} // namespace
+
 /// What a script may have changed in them counts from the next step on.
 void McaEngine::gatherWalls(Scene* scene)
 {
 	vector<shared_ptr<Body>>    found;
 	vector<mca::WallStart> starts;
+	std::map<int, Real>    clumps; ///< of automata: masses of their members
 	if (!wallsAreOthers(*scene) && !order.empty())
 		for (const auto& b : scene->bodies->body) {
-			if (!b || !mayBeTouched(*b) || isAutomaton(b)) continue;
+			if (!b || !mayBeTouched(*b) || movesAlone(b)) continue;
 			starts.push_back(wallOf(*scene, *b)), found.push_back(b);
+			if (isAutomaton(b)) clumps[b->clumpId] += b->state->mass;
 		}
+	for (const auto& [id, mass] : clumps) checkClump(*scene, id, mass);
 	const bool equal = starts.size() == wallStarts.size() && std::equal(starts.begin(), starts.end(), wallStarts.begin(), sameWall);
 	walls.swap(found);
 	letGo(found);

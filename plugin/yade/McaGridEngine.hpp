@@ -48,6 +48,7 @@ public:
 	void viscous(int block, const string& side, int start, int end);
 	void force(py::object nodes, py::object fx, py::object fy);
 	void setVelocity(int block, py::object velocity);
+	void setCells(int block, py::object stress, py::object plasticStrain, py::object temperature);
 	int  addGauge(const Vector2r& at, int period);
 	// Python: reading
 	py::object view(int block, const string& what);
@@ -123,6 +124,16 @@ public:
 		.def("force", &McaGridEngine::force, (py::arg("nodes"), py::arg("x") = 0., py::arg("y") = 0.), "Force [N/m] on each of the open nodes.")
 		.def("setVelocity", &McaGridEngine::setVelocity, (py::arg("block"), py::arg("velocity")), "Initial velocity [m/s]: a pair for the whole "
 		    "block or an array (rows+1, cells per row+1, 2). Shared nodes get the mean weighted by mass.")
+		.def("setCells", &McaGridEngine::setCells, (py::arg("block"), py::arg("stress") = py::object(), py::arg("plasticStrain") = py::object(),
+		    py::arg("temperature") = py::object()), "Initial state of the cells of a block, before the first step. stress [Pa], positive in "
+		    "tension: xx, yy, "
+		    "xy (zz follows from Hooke's law in plane strain) or xx, yy, xy, zz, one row for all cells or an array (rows, cells, 3 or 4); "
+		    "plasticStrain [-] and temperature "
+		    "[K]: a number or an array (rows, cells); None: as it is. Nodes stay where they are and keep their masses: the areas at rest become "
+		    "those under which the cells "
+		    "have this pressure. Raises RuntimeError after the first step, above the yield stress, for another number of values, for a temperature "
+		    "where no "
+		    "flow stress depends on it, and for a stress with eos='mieGruneisen'.")
 		.def("addGauge", &McaGridEngine::addGauge, (py::arg("at"), py::arg("period") = 1), "Records the history of the point at (x, y) [m] every "
 		    "period steps; returns its number.")
 		.def("gauge", &McaGridEngine::gaugeHistory, (py::arg("number")), "History of a gauge, numpy (n, 10): time [s], x, y [m] and pressure [Pa] "

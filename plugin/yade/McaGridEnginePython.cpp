@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // McaGridEngine: conversion of what scripts give and take.
 #include "McaGridEngine.hpp"
+#include <kernels/deviator.hpp>
 #include "McaTables.hpp"
 #include <sdk/arrayView.hpp>
 
@@ -254,6 +255,57 @@ void McaGridEngine::setVelocities(int block, const vector<double>& v, const vect
 	grid().setVelocity(block, [&](double, double) {
 		k += 2;
 		return std::array<double, 2> { v[k - 2], v[k - 1] };
+	});
+}
+
+namespace {
+	/// Deviator and pressure of stresses xx, yy, xy (and zz) [Pa], one row for each cell or one for all.
+	void putStress(const vector<double>& v, const vector<long>& shape, const mca::grid::Block& b, mca::grid::CellFields& to)
+	{
+		const size_t cells = size_t(b.ni) * size_t(b.nj), n = shape.empty() ? 0 : size_t(shape.back());
+		const bool   one = shape.size() == 1, all = shape.size() == 3 && shape[0] == b.nj && shape[1] == b.ni;
+		if (!((one || all) && (n == 3 || n == 4)))
+			throw mca::Error(
+				"block '" + b.options.name + "': stress [Pa] must be xx, yy, xy (and zz) for all cells, or an array of shape ("
+				+ std::to_string(b.nj) + ", " + std::to_string(b.ni) + ", 3 or 4).");
+		const double K = b.material.eos.bulkModulus(), G = b.material.G, nu = (3 * K - 2 * G) / (2 * (3 * K + G));
+		for (size_t k = 0; k < cells; k++) {
+			const double* s = &v[one ? 0 : n * k];
+			const mca::SplitStress split({ s[0], s[1], n == 4 ? s[3] : nu * (s[0] + s[1]), 0., 0., s[2] });
+			to.pressure.push_back(split.pressure), to.sxy.push_back(split.deviator.xy);
+			to.sxx.push_back(split.deviator.xx), to.syy.push_back(split.deviator.yy);
+		}
+	}
+	/// A number for all cells, or one for each.
+	vector<double> ofCells(const py::object& o, const char* name, const mca::grid::Block& b)
+	{
+		if (o.is_none()) return {};
+		vector<long>         shape;
+		const vector<double> v = numbers(o, name, &shape);
+		if (v.size() == 1) return vector<double>(size_t(b.ni) * size_t(b.nj), v[0]);
+		if (shape.size() != 2 || shape[0] != b.nj || shape[1] != b.ni)
+			throw mca::Error(
+				"block '" + b.options.name + "': " + name + " must be a number or an array of shape (" + std::to_string(b.nj) + ", "
+				+ std::to_string(b.ni) + ").");
+		return v;
+	}
+} // namespace
+
+void McaGridEngine::setCells(int block, py::object stress, py::object plasticStrain, py::object temperature)
+{
+	inCall("setCells", [&] {
+		if (block < 0 || block >= grid().blocks()) throw mca::Error("there is no block " + std::to_string(block) + ".");
+		const auto&           b = grid().block(block);
+		mca::grid::CellFields f;
+		f.eqps = ofCells(plasticStrain, "plasticStrain", b), f.temperature = ofCells(temperature, "temperature", b);
+		vector<long> shape;
+		if (!stress.is_none()) {
+			const vector<double> v = numbers(stress, "stress", &shape);
+			putStress(v, shape, b, f);
+		}
+		if (f.eqps.empty() && f.temperature.empty() && f.pressure.empty())
+			throw mca::Error("give at least one of stress, plasticStrain, temperature.");
+		locked([&] { grid().setCells(block, f); });
 	});
 }
 

@@ -4,6 +4,7 @@
 #include "McaBodies.hpp"
 #include "McaCast.hpp"
 #include "McaGuarded.hpp"
+#include "McaPairRules.hpp"
 #include "law/McaLawLoop.hpp"
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
@@ -188,6 +189,14 @@ long McaLaw::cut(py::object pairs)
 	}
 	return hold;
 }
+
+void McaLaw::setPair(py::object first, py::object second, Real strength, Real pairStrength, py::object frictionAngle, Real viscosity)
+{
+	refuseWhileRunning("setPair");
+	addPairRule(pairMaterials, pairNumbers, "McaLaw.setPair", first, second, strength, pairStrength, frictionAngle, viscosity);
+}
+
+void McaLaw::postLoad(McaLaw&) { checkPairRules(pairMaterials, pairNumbers, "McaLaw"); }
 
 py::list McaLaw::links() const
 {

@@ -25,6 +25,8 @@ public:
 	const vector<const Engine*>& integrators() const { return newtons; }
 	py::list links() const;
 	long     cut(py::object pairs);
+	void     setPair(py::object first, py::object second, Real strength, Real pairStrength, py::object frictionAngle, Real viscosity);
+	void     postLoad(McaLaw&);
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(McaLaw, McaSolverEngine,
 		"First half of the law of movable cellular automata in YADE's loop (plane strain x, y, or space): volume and pressure of every automaton, "
@@ -49,6 +51,11 @@ public:
 		    "is refused"))
 		((Real, linkFactor, 1.2, , "bodies closer than this many diameters are linked [-], 1.02 to 1.5; read when links are made, a change after the "
 		    "first step is refused"))
+		((bool, linkAcrossMasks, false, , "bodies of different masks, which must have a common bit, link, too; see McaEngine. Read when automata "
+		    "are taken "
+		    "in: in the first step and when bodies are added"))
+		((vector<shared_ptr<Material>>, pairMaterials, , Attr::hidden, "of setPair(): two materials each"))
+		((vector<Real>, pairNumbers, , Attr::hidden, "of setPair(): strength, pairStrength [Pa], friction (-1: not given) and viscosity each"))
 		((Real, linkFactorUsed, 0, Attr::hidden, "with which links were made [-]; 0: none yet"))
 		((Real, volumeFilter, 0.1, , "rate at which stripes of volume fade in flowing material, in c0/d [-], 0 to 1; see McaEngine; read in every "
 		    "step"))
@@ -87,6 +94,13 @@ public:
 		.def("counters", &McaLaw::counters, "Work done so far: steps, brokenLinks, clamped, deepest.")
 		.def("links", &McaLaw::links, "Pairs of body ids whose link holds, list of (id1, id2). Raises RuntimeError while the simulation runs in the "
 		    "background.")
+		.def("setPair", &McaLaw::setPair, (py::arg("material1"), py::arg("material2"), py::arg("strength") = 1.,
+		    py::arg("pairStrength") = std::numeric_limits<Real>::infinity(), py::arg("frictionAngle") = py::object(), py::arg("viscosity") = 1.),
+		    "What holds between two materials in place of what follows from "
+		    "both; see "
+		    "McaEngine.setPair(). strength, viscosity [-], pairStrength [Pa], frictionAngle [rad]. Counts from the next step on. Raises "
+		    "RuntimeError for numbers out of "
+		    "range and while the simulation runs in the background.")
 		.def("cut", &McaLaw::cut, (py::arg("pairs")), "Break these links at the start of the next step; see McaEngine.cut(). Links are there from the "
 		    "first step on. Returns how many of them hold. Raises RuntimeError while the simulation runs in the background, TypeError when pairs are "
 		    "none.")

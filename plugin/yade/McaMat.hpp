@@ -36,6 +36,7 @@ public:
 		((Real, contactSum, 0, Attr::readonly, "volume terms of the contacts [-]"))
 		((Real, diameter, 0, Attr::readonly, "with which the automaton was taken in [m]"))
 		((int, triangles, 0, Attr::readonly, "state.triangles with which it was taken in"))
+		((bool, acrossMasks, false, Attr::readonly, "McaLaw.linkAcrossMasks with which it was taken in"))
 		((Real, moved, 0, Attr::readonly, "time step that led to the present position [s]"))
 		((Vector3r, from, Vector3r::Zero(), Attr::readonly, "position before the last move [m]"))
 		((Quaternionr, fromOri, Quaternionr::Identity(), Attr::readonly, "orientation before the last move"))

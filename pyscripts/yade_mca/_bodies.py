@@ -101,15 +101,8 @@ def addBodies(packing, material, velocity=None, angularVelocity=0., mask=1, fixe
 _material = material  # where an argument has the same name
 
 
-def resetStates(ids):
-	"""Gives automata the state of rest: a fresh McaState with the position, velocity, orientation, spin, mass, inertia, blockedDOFs and strength of the old one.
-
-	ids: of bodies in O.bodies with material McaMat and shape Sphere, whole numbers. For bodies that another engine has moved: links are made anew from where
-	they are now (the engine refuses a packing that is too distorted for it), pressure, stresses, plastic strain and heat are gone, the temperature is the
-	material's referenceTemperature. An engine takes over bodies in this state when it gathers them for the first time; the one that has moved them refuses
-	the next step, so put a new one into O.engines. state.triangles is 0: where a body ends is seen by the masses, as far as it is still whole.
-	Raises PackingError for an id that is no automaton, before any state is changed.
-	"""
+def _automata(ids):
+	"""The bodies of these ids, list. Raises PackingError for an id that is no automaton."""
 	from ._yade import scene, yadeClass
 	from .packings import PackingError
 	o, State, Mat, Sphere = scene(), yadeClass('McaState'), yadeClass('McaMat'), yadeClass('Sphere')
@@ -121,6 +114,46 @@ def resetStates(ids):
 		if b is None or not isinstance(b.material, Mat) or not isinstance(b.shape, Sphere) or not isinstance(b.state, State):
 			raise PackingError('ids: body %d must be an automaton in O.bodies (material McaMat, shape Sphere, state McaState)' % i)
 		bodies.append(b)
+	return bodies
+
+
+def clump(ids):
+	"""Makes automata one rigid body, a clump of YADE; returns its id (int).
+
+	ids: two or more automata that addBodies() has made, whole numbers. Mass [kg, in plane strain kg/m] and inertia [kg m2, kg m] are those of the members, where
+	O.bodies.clump() would take the volumes of spheres; in plane strain motion along z and about x and y stays blocked. The mask is that of the first. What YADE has moves it (NewtonIntegrator with
+	a mask that has a bit of it), and automata of McaEngine touch it (12b); McaLaw refuses clumps of automata.
+	Raises PackingError for fewer than two ids, one that is named twice, is no automaton or belongs to a clump already.
+	"""
+	from ._yade import scene
+	from .packings import PackingError
+	members = _automata(ids)
+	if len(members) < 2 or len({b.id for b in members}) < len(members): raise PackingError('ids must be two or more different automata; got %s' % reprlib.repr(ids))
+	for b in members:
+		if b.isClumpMember: raise PackingError('ids: body %d belongs to a clump already; each must stand alone' % b.id)
+	o, states = scene(), [b.state for b in members]
+	number = o.bodies.clump([b.id for b in members])
+	body, mass = o.bodies[number], sum(s.mass for s in states)
+	body.mask, s = members[0].mask, body.state
+	if all(set('zXY') <= set(m.blockedDOFs) for m in states):
+		around = sum(m.inertia[2] + m.mass * ((m.pos[0] - s.pos[0])**2 + (m.pos[1] - s.pos[1])**2) for m in states)
+		s.inertia, s.blockedDOFs = (around, ) * 3, 'zXY'  # the same about all axes: YADE turns the frame of a clump as it likes
+	else:
+		s.inertia = s.inertia * (mass / s.mass)
+	s.mass = mass
+	return number
+
+
+def resetStates(ids):
+	"""Gives automata the state of rest: a fresh McaState with the position, velocity, orientation, spin, mass, inertia, blockedDOFs and strength of the old one.
+
+	ids: of bodies in O.bodies with material McaMat and shape Sphere, whole numbers. For bodies that another engine has moved: links are made anew from where
+	they are now (the engine refuses a packing that is too distorted for it), pressure, stresses, plastic strain and heat are gone, the temperature is the
+	material's referenceTemperature. An engine takes over bodies in this state when it gathers them for the first time; the one that has moved them refuses
+	the next step, so put a new one into O.engines. state.triangles is 0: where a body ends is seen by the masses, as far as it is still whole.
+	Raises PackingError for an id that is no automaton, before any state is changed.
+	"""
+	bodies = _automata(ids)
 	for b in bodies:
 		old, new = b.state, b.material.newAssocState()
 		for name in ('pos', 'ori', 'vel', 'angVel', 'angMom', 'mass', 'inertia', 'refPos', 'refOri', 'blockedDOFs', 'isDamped', 'densityScaling', 'strength', 'mirrors'):

@@ -25,7 +25,7 @@ import numpy as np
 
 from ._arguments import array, number
 
-__all__ = ['RodMeasure', 'craterDepth', 'geometricLength', 'meanAround', 'momentumSettled', 'rearClearance', 'rodMeasure', 'speedAlong']
+__all__ = ['Fragments', 'RodMeasure', 'craterDepth', 'cumulative', 'fragments', 'fragmentsOf', 'geometricLength', 'gradyKipp', 'meanAround', 'momentumSettled', 'mott', 'rearClearance', 'rodMeasure', 'speedAlong']
 
 TAIL_STRAIN = 0.1  #: material with less plastic strain is the undeformed tail [-]
 INTACT_STRAIN = 0.3  #: material with less plastic strain may count as intact rod [-]
@@ -196,3 +196,85 @@ def momentumSettled(time, momentum, window, tolerance=1e-3):
 		return False
 	recent = p[t >= t[-1] - window]
 	return bool(np.ptp(recent) <= tolerance * abs(p[0]))
+
+
+@dataclass(frozen=True)
+class Fragments:
+	"""What holds together, heaviest first; F of them of N automata, in the plane (dim 2) per m of thickness."""
+	label: np.ndarray  #: fragment to which each automaton belongs (N,) int
+	count: np.ndarray  #: automata of each (F,) int
+	mass: np.ndarray  #: (F,) [kg, in the plane kg/m]
+	position: np.ndarray  #: of the centre of mass (F, dim) [m]
+	velocity: np.ndarray  #: of it (F, dim) [m/s]
+	size: np.ndarray  #: diameter of the ball, in the plane of the disc, of the same volume (F,) [m]
+	elongation: np.ndarray  #: largest over smallest radius of gyration, each automaton a ball of its own (F,) [-]; 1: round
+
+
+def fragments(ids, links, mass, positions, velocity, volume):
+	"""Fragments: automata that are connected by links.
+
+	ids (N,) int; links: pairs of ids, (M, 2) or a list, those that hold; mass (N,) [kg]; positions, velocity (N, dim) [m], [m/s], dim 2 or 3; volume (N,) at rest [m3, in
+	the plane m2], above 0. Raises ValueError for arrays that do not belong together and for a link of an unknown id.
+	"""
+	from scipy.sparse import coo_matrix
+	from scipy.sparse.csgraph import connected_components
+	x = array('positions', positions, ValueError, ((None, 2), (None, 3)))
+	n, dim = x.shape
+	v, m, V = array('velocity', velocity, ValueError, (n, dim)), array('mass', mass, ValueError, (n, )), array('volume', volume, ValueError, (n, ))
+	ids = np.asarray(ids)
+	if ids.shape != (n, ) or len(np.unique(ids)) < n: raise ValueError('ids must be %d different whole numbers, one for each position' % n)
+	if not (V > 0).all() or not (m > 0).all(): raise ValueError('mass and volume must be above 0')
+	pairs = np.asarray(links, int).reshape(-1, 2)
+	order = np.argsort(ids)
+	place = np.searchsorted(ids, pairs, sorter=order)
+	if len(pairs) and not ((place < n).all() and (ids[order[place]] == pairs).all()): raise ValueError('links name an id that is not in ids')
+	a, b = order[place].T if len(pairs) else (np.zeros(0, int), ) * 2
+	found, label = connected_components(coo_matrix((np.ones(len(a)), (a, b)), shape=(n, n)), directed=False)
+	total = np.bincount(label, m, found)
+	heaviest = np.argsort(-total, kind='stable')
+	rank = np.empty(found, int)
+	rank[heaviest] = np.arange(found)
+	label = rank[label]
+
+	def sums(values):
+		return np.stack([np.bincount(label, values[:, c], found) for c in range(values.shape[1])], axis=1)
+
+	total = np.bincount(label, m, found)
+	centre = sums(m[:, None] * x) / total[:, None]
+	off = x - centre[label]
+	moments = sums((m[:, None, None] * off[:, :, None] * off[:, None, :]).reshape(n, dim * dim)).reshape(found, dim, dim) / total[:, None, None]
+	each = (4 * V / math.pi)**0.5 if dim == 2 else (6 * V / math.pi)**(1 / 3)  # diameter of one automaton
+	own = np.bincount(label, m * each**2, found) / total / (4 * (dim + 2))  # a ball's own second moment along an axis
+	spread = np.linalg.eigvalsh(moments + own[:, None, None] * np.eye(dim))
+	whole = np.bincount(label, V, found)
+	size = (4 * whole / math.pi)**0.5 if dim == 2 else (6 * whole / math.pi)**(1 / 3)
+	return Fragments(label, np.bincount(label, minlength=found), total, centre, sums(m[:, None] * v) / total[:, None], size, np.sqrt(spread[:, -1] / spread[:, 0]))
+
+
+def fragmentsOf(engine):
+	"""fragments() of the automata of a McaEngine now, in the order of engine.ids; volumes at rest are those of the masses."""
+	dim = engine.dimension
+	names = ('ids', 'mass', 'diameter', 'weight') + tuple('xyz'[:dim]) + tuple('v' + c for c in 'xyz'[:dim])
+	f = engine.fields(names)
+	cell = math.sqrt(0.75) * f['diameter']**2 if dim == 2 else f['diameter']**3 / math.sqrt(2)  # of the packing
+	x, v = (np.stack([f[k + c] for c in 'xyz'[:dim]], axis=1) for k in ('', 'v'))
+	return fragments(f['ids'], engine.links(), f['mass'], x, v, cell * f['weight'])
+
+
+def cumulative(mass):
+	"""Cumulative distribution of fragments: (mass rising (F,), number of fragments at least as heavy (F,))."""
+	m = np.sort(array('mass', mass, ValueError, (None, )))
+	return m, np.arange(len(m), 0, -1)
+
+
+def mott(mass, number, mean):
+	"""Mott's distribution of plates that break into pieces of two dimensions: number exp(-sqrt(2 m/mean)), of mean mass `mean` (N. F. Mott, Proc. R. Soc. A 189, 1947).
+
+	mass: where [kg], any shape; number: of all fragments. Returns how many are heavier than that.
+	"""
+	return number * np.exp(-np.sqrt(2 * np.asarray(mass, float) / mean))
+
+
+def gradyKipp(mass, number, mean):
+	"""Distribution of a body that breaks at random: number exp(-m/mean) (D. E. Grady and M. E. Kipp, J. Appl. Phys. 58, 1985). Arguments as mott()."""
+	return number * np.exp(-np.asarray(mass, float) / mean)

@@ -15,11 +15,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ._arguments import array, number, oneOf
-from ._bodies import addBodies, resetStates
+from ._bodies import addBodies, clump, resetStates
 from ._fcc import Ball, Box, Cylinder, SpacePacking, make
 from .outlines import Polygon, Predicate, Rectangle, asOutline, disc
 
-__all__ = ['Packing', 'PackingError', 'CellGeometry', 'cellGeometry', 'hexagonal', 'create', 'addBodies', 'resetStates', 'Polygon', 'Predicate', 'Rectangle', 'disc', 'fcc', 'SpacePacking', 'Box',
+__all__ = ['Packing', 'PackingError', 'CellGeometry', 'cellGeometry', 'hexagonal', 'create', 'addBodies', 'clump', 'resetStates', 'Polygon', 'Predicate', 'Rectangle', 'disc', 'fcc', 'SpacePacking', 'Box',
            'Cylinder', 'Ball']
 
 

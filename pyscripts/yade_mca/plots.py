@@ -20,7 +20,7 @@ from matplotlib.ticker import MaxNLocator, NullFormatter
 
 from .tasks.report import writeAtomically
 
-__all__ = ['automataPicture', 'convergence', 'drawAutomata', 'drawGrid', 'drawPareto', 'gridQuads', 'history', 'pareto', 'paretoFront', 'save', 'saveFixed', 'scale', 'spacePicture']
+__all__ = ['automataPicture', 'convergence', 'crackHistory', 'drawAutomata', 'drawGrid', 'drawPareto', 'fragmentMasses', 'gridQuads', 'history', 'pareto', 'paretoFront', 'save', 'saveFixed', 'scale', 'spacePicture']
 
 #: unit of the data -> (factor, unit shown)
 SCALES = {'Pa': (1e-9, 'GPa'), 'm': (1e3, 'mm'), 's': (1e6, 'µs'), 'J/kg': (1e-3, 'kJ/kg'), 'J/m': (1e-3, 'kJ/m')}
@@ -187,6 +187,59 @@ def history(path, time, panels, title='', marks=()):
 		axes[-1, 0].set_xlabel('t [%s]' % unit)
 		axes[0, 0].set_title(title)
 		figure.align_ylabels()
+		return save(figure, path)
+
+
+def crackHistory(path, broken, bins=18, title=''):
+	"""Cracks over time and their directions: cumulative number of broken links by cause, and the rose of crack lines in the plane of x and y.
+
+	path: of the picture. broken: cracks.history(engine), or a dict with its 'time' [s], 'cause' (names), 'nx', 'ny'. bins: of the rose, over 180 degrees.
+	Raises ValueError when nothing has broken or bins are no whole number from 1 to 360.
+	"""
+	time, cause = np.asarray(broken['time'], float), np.asarray(broken['cause'])
+	if not len(time): raise ValueError('no link has broken, so there is nothing to draw')
+	if isinstance(bins, bool) or not isinstance(bins, (int, np.integer)) or not 1 <= bins <= 360: raise ValueError('bins must be a whole number from 1 to 360; got %r' % (bins, ))
+	with plt.rc_context(STYLE):
+		figure = plt.figure(figsize=(8, 3.4))
+		left, right = figure.add_subplot(121), figure.add_subplot(122, projection='polar')
+		shownTime, unit = shown(time, 's')
+		for name in sorted(set(cause.tolist())):
+			t = np.sort(shownTime[cause == name])
+			left.step(np.r_[t, shownTime.max()], np.r_[1:len(t) + 1, len(t)], where='post', label='%s (%d)' % (name, len(t)))
+		left.set(xlabel='t [%s]' % unit, ylabel='broken links', title=title)
+		left.legend(fontsize=8)
+		angle = (np.arctan2(broken['ny'], broken['nx']) + 0.5 * np.pi) % np.pi  # of the crack's line, across the normal
+		counts, edges = np.histogram(angle, bins=int(bins), range=(0, np.pi))
+		for turn in 0, np.pi:
+			right.bar(edges[:-1] + turn, counts, width=np.pi / bins, align='edge', color='C0')
+		right.set_yticklabels([])
+		figure.tight_layout()
+		return save(figure, path)
+
+
+def fragmentMasses(path, found, title='', skip=1):
+	"""Cumulative masses of fragments beside Mott and Grady-Kipp through their mean.
+
+	path: of the picture. found: measure.Fragments, or {name: Fragments} for several in one picture. skip: heaviest fragments that are left out, as what is left of
+	the bodies (whole number, 0 or more). Raises ValueError when nothing is left.
+	"""
+	from .measure import cumulative, gradyKipp, mott
+	several = found if isinstance(found, dict) else {'': found}
+	if isinstance(skip, bool) or not isinstance(skip, (int, np.integer)) or skip < 0: raise ValueError('skip must be a whole number of 0 or more; got %r' % (skip, ))
+	with plt.rc_context(STYLE):
+		figure, ax = plt.subplots(figsize=(5, 3.6))
+		for q, (name, f) in enumerate(several.items()):
+			mass = f.mass[skip:]
+			if not len(mass): raise ValueError('skip = %d leaves no fragment of %d' % (skip, len(f.mass)))
+			m, number = cumulative(mass)
+			ax.step(m, number, where='pre', color='C%d' % q, label=(name + ': ' if name else '') + '%d fragments' % len(m))
+			at = np.geomspace(m[0], m[-1], 100) if m[-1] > m[0] else m
+			ax.plot(at, mott(at, len(m), m.mean()), '--', color='C%d' % q, lw=0.8, label='Mott' if not q else None)
+			ax.plot(at, gradyKipp(at, len(m), m.mean()), ':', color='C%d' % q, lw=0.8, label='Grady-Kipp' if not q else None)
+		ax.set(xscale='log', yscale='log', xlabel='mass [kg/m]' if f.position.shape[1] == 2 else 'mass [kg]', ylabel='fragments at least as heavy', title=title)
+		ax.set_ylim(bottom=0.7)
+		ax.legend(fontsize=8)
+		figure.tight_layout()
 		return save(figure, path)
 
 

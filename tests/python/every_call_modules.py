@@ -78,7 +78,7 @@ GOOD = {
         'obliquity': 0., 'vx': 10., 's': penetrationScene, 'scenes.profile.s': strips, 'scenes.profile.part': 'flyer', 'scenes.driveEnd.s': strips,
         'scenes.addStrip.packing': lambda: packing().translated((0.5, 0.)), 'scenes.driveEnd.part': 'flyer', 'scenes.taylorBar.anvil': 'rough',
         'measure.rodMeasure.velocity': [(0., -90.), (0., -80.)], 'measure.speedAlong.velocity': [(0., -90.), (0., -80.)],
-        'packings.resetStates.ids': bodies, 'packings.cellGeometry.name': 'hexagonal', 'packings.create.name': 'hexagonal', 'scenes.tiedPlate.largest': 3.,
+        'packings.resetStates.ids': bodies, 'packings.clump.ids': bodies, 'packings.cellGeometry.name': 'hexagonal', 'packings.create.name': 'hexagonal', 'scenes.tiedPlate.largest': 3.,
         'materials.Material.flowStress.plasticStrain': 0.1, 'materials.Material.johnsonCookFractureStrain.triaxiality': 0.3,
         'measure.momentumSettled.tolerance': 1e-3, 'outlines.Polygon.classify.radius': D, 'packings.fcc.shape': ball,
         'packings.fcc.rim': 'full', 'packings.fcc.mirror': '', 'packings.fcc.origin': (0., 0., 0.), 'packings.fcc.orientation': ((1., 1., 1.), (1., -1., 0.)), 'packings.SpacePacking.translated.by': (D, 0., 0.),

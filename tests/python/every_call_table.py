@@ -31,7 +31,8 @@ BY_NAME = {
 }
 BY_TYPE = {'int': 0, 'float': 1., 'str': '', 'bool': True, 'object': 1.}
 ARGUMENTS = {
-        'McaEngine.prescribe': {'x': 1.}, 'McaEngine.push': {'x': 1.},
+        'McaEngine.prescribe': {'x': 1.}, 'McaEngine.push': {'x': 1.}, 'McaEngine.press': {'pressure': 1e6}, 'McaEngine.setStress': {'stress': (1e6, 0., 0.)},
+        'McaGridEngine.setCells': {'plasticStrain': 0.1},
         'McaGridEngine.addBlock': {'x': [[10e-3, 11e-3], [10e-3, 11e-3]], 'y': [[0, 0], [1e-3, 1e-3]]},
         'McaGridEngine.prescribeNodes': {'velocity': 1.},
         'McaGridEngine.probeLine': {'start': (0., 1e-3), 'end': (3e-3, 1e-3)},
@@ -46,7 +47,7 @@ def goodArguments(key, given):
 		out = {}
 		for t, name, default in given:
 			if default and name not in ('start', 'end') and name not in ARGUMENTS.get(key, ()): continue
-			if t == 'Material': out[name] = scenes.metal()
+			if t == 'Material' or name in ('material1', 'material2'): out[name] = scenes.metal()
 			elif name in ARGUMENTS.get(key, ()): out[name] = ARGUMENTS[key][name]
 			elif name in BY_NAME: out[name] = BY_NAME[name]
 			elif t.startswith('Vector'): out[name] = (0., ) * int(t[6])

@@ -200,3 +200,19 @@ def test_refusals(plugin):
 	engine_scene.block()
 	e = engine_scene.engine(1e-8, contacts=False)
 	with pytest.raises(RuntimeError, match='contacts=False'): e.cut([(0, 1)])
+
+
+def test_theHistoryIsDrawn(plugin, tmp_path):
+	from yade import O
+	from yade_mca import plots
+	strip(fractureStrain=0.05)
+	e = engine_scene.engine(1e-8)
+	cracks.cut(e, ((-2.3 * D, 0.31 * D), (2.4 * D, 0.31 * D)))
+	O.run(2, True)
+	path = plots.crackHistory(str(tmp_path / 'cracks.png'), cracks.history(e), bins=12)
+	assert (tmp_path / 'cracks.png').stat().st_size > 5000 and path
+	for bad in 0, 1.5, 400:
+		with pytest.raises(ValueError, match='bins'):
+			plots.crackHistory(str(tmp_path / 'x.png'), cracks.history(e), bins=bad)
+	with pytest.raises(ValueError, match='nothing to draw'):
+		plots.crackHistory(str(tmp_path / 'x.png'), dict(time=[], cause=[], nx=[], ny=[]))

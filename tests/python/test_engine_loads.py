@@ -164,3 +164,43 @@ def test_refusals(plugin):
 	O.run(1, True)
 	O.bodies[ids[0]].state.blockedDOFs = 'zXY'
 	with pytest.raises(RuntimeError, match='automaton %d has a prescribed velocity and is free' % ids[0]): O.run(1, True)
+
+
+def test_aVelocitySetWherePrescribeDrivesIsRefused(plugin):
+	from yade import O
+	ids = scene.block(6, 6).tolist()
+	e = scene.engine(DT)
+	e.prescribe(ids[:4], x=5.)
+	O.run(5, True)
+	O.bodies[ids[1]].state.vel = (5, 7, 0)  # along y nothing is prescribed
+	O.run(5, True)
+	O.bodies[ids[0]].state.vel = (9, 0, 0)
+	with pytest.raises(RuntimeError, match='vel along x was set to 9'):
+		O.run(1, True)
+	O.bodies[ids[0]].state.vel = (5, 0, 0)
+	O.run(1, True)
+	e.clearLoads()
+	O.bodies[ids[0]].state.vel = (9, 0, 0)
+	O.run(1, True)
+	assert O.bodies[ids[0]].state.vel[0] == 9
+
+
+def test_materialsChangeFromStageToStage(plugin):
+	"""Squeezed beyond 0.8 GPa: elastic in the first stage, soft in the second, by constants changed in place and by another material for some bodies."""
+	from yade import O
+	ids = scene.block(8, 8, constants=dict(scene.STEEL, yieldModel='perfect', yieldStress=5e9)).tolist()
+	e = scene.engine(DT)
+	e.damping = 0.3
+	x = scene.states(np.array(ids))[:, 0]
+	e.prescribe(np.array(ids)[x < x.min() + 0.6 * D].tolist(), x=((0, 1e-6), (0, 30.)))
+	e.prescribe(np.array(ids)[x > x.max() - 0.6 * D].tolist(), x=((0, 1e-6), (0, -30.)))
+	O.run(200, True)
+	assert e.field('plasticStrain').max() == 0 and e.field('equivalentStress').max() > 0.5e9
+	O.bodies[ids[0]].mat.yieldStress = 0.3e9
+	O.run(50, True)
+	assert e.field('plasticStrain').max() > 0 and e.field('equivalentStress').max() < 0.3e9 * 1.0001
+	weak = materials.mcaMat('4340', **dict(scene.STEEL, yieldModel='perfect', yieldStress=0.1e9))
+	for i in ids[:20]: O.bodies[i].mat = weak
+	O.run(50, True)
+	sigma = e.field('equivalentStress')
+	assert sigma[:20].max() < 0.1e9 * 1.0001 and sigma.max() > 0.2e9

@@ -41,3 +41,9 @@ def test_aFeatureThatDoesNothingCostsNoInstructions(perStep, present, absent):
 def test_leavingAFeatureOutSavesItsInstructions(perStep, more, less):
 	"""No account, no test of strengths, no plasticity and no viscosity where the scene has none."""
 	assert perStep(more) > 1.005 * perStep(less)
+
+
+def test_whatWallsCost(perStep):
+	"""A wall that nothing touches, and one along a whole side of a block of 40 x 40 automata: more of them touch it than of a rod of the main job."""
+	assert perStep('wallFar') <= 1.005 * perStep('none')
+	assert perStep('wallTouching') <= 1.03 * perStep('none')

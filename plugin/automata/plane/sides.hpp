@@ -65,6 +65,26 @@ template <class S> Tensor<double> measured(const S& store, size_t i)
 		if (holds(store.flags[i], k)) addMeasured(sum, store.flags[i], k, store.between(i, size_t(store.neighbour[linkSlot(i, k)])));
 	return sum;
 }
+/// Push of link k of automaton i by unit pressures of both ends, as its negative [m]; own, other: their unitPush().
+template <class S> Vec<double> unitPushOfLink(const S& store, size_t i, int k, const Tensor<double>& own, const Tensor<double>& other)
+{
+	return pressurePush(own, other, trianglesIn(store.flags[i]), trianglesIn(store.flags[size_t(store.neighbour[linkSlot(i, k)])]), k);
+}
+/// A pressure of 1 Pa pushes link k by this times its direction [m].
+template <class S> Tensor<double> unitPush(const S& store, size_t i)
+{
+	return cofactor(measured(store, i)) * (store.factor[i] * Lattice::perVolume(store.diameter[i]) * store.cell[i]);
+}
+/// Stress of the whole automaton [Pa], without its pressure: along all links, and along z. Kept as J times it, which J must be set before.
+template <class S> void setDeviator(S& store, size_t i, const Deviator& s)
+{
+	for (int k = 0; k < nLinks; k++) {
+		if (!holds(store.flags[i], k)) continue;
+		const size_t at = linkSlot(i, k);
+		store.setStress(at, scaled(sideOf(s, store.between(i, size_t(store.neighbour[at]))), store.J[i]));
+	}
+	store.szz[i] = outOfPlane(s);
+}
 template <class S> bool   hasMirrors(const S&) { return false; }
 template <class S> bool   isMirrored(const S&, size_t) { return false; }
 template <class S> bool   mirrorsFit(const S&) { return true; }

@@ -119,6 +119,23 @@ template <class S> Tensor<double> measured(const S& store, size_t i)
 	if (hasMirrors(store)) eachMirror(store, i, [&](int axis, Vec<double> normal) { mirror(sum, axis, normal); });
 	return sum;
 }
+/// Push of link k of automaton i by unit pressures of both ends, as its negative [m2]; own, other: their unitPush().
+template <class S> Vec<double> unitPushOfLink(const S& store, size_t i, int k, const Tensor<double>& own, const Tensor<double>& other)
+{
+	return times(own + other, k) * linkWeight(store.flags[i], k);
+}
+/// A pressure of 1 Pa pushes link k by this times its direction [m2].
+template <class S> Tensor<double> unitPush(const S& store, size_t i)
+{
+	const double cell = store.cell[i] / shareOfStar(store.flags[i], store.weight[i]);
+	return cofactor(measured(store, i)) * (store.factor[i] * Lattice::perVolume(store.diameter[i]) * cell);
+}
+/// Stress of the whole automaton [Pa], without its pressure.
+template <class S> void setDeviator(S& store, size_t i, const Deviator& s)
+{
+	for (int k = 0; k < nLinks; k++) store.setStress(linkSlot(i, k), {});
+	deviators(store).set(i, symmetricOf(s));
+}
 /// Weight of a link in the exchange of volume (5e).
 inline double exchangeWeight(Flags flags, double weight, int k) { return linkWeight(flags, k) / shareOfStar(flags, weight); }
 template <class C> bool sidesAre(const C& contacts, size_t n) { return contacts.traction.size() == n; }

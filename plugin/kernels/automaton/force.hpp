@@ -24,10 +24,15 @@ struct PairViscosity {
 };
 MCA_INLINE PairViscosity viscosityOf(const Material& m) { return { m.viscosity.linear * m.eos.rho0 * m.eos.c0, m.viscosity.quadratic * m.eos.rho0 }; }
 /// The smaller of both sides' coefficients: a heavy neighbour must not overdamp a light automaton.
-MCA_INLINE PairViscosity viscosityOf(const Material& a, const Material& b)
+MCA_INLINE PairViscosity viscosityOf(const Material& a, const Material& b, const PairRule& rule)
 {
 	const PairViscosity p = viscosityOf(a), q = viscosityOf(b);
-	return { min(p.linear, q.linear), min(p.quadratic, q.quadratic) };
+	return { min(p.linear, q.linear) * rule.viscosity, min(p.quadratic, q.quadratic) * rule.viscosity };
+}
+/// Coulomb coefficient of a pair.
+inline double frictionOf(const Material& a, const Material& b, const PairRule& rule)
+{
+	return rule.friction >= 0. ? rule.friction : min(a.friction, b.friction);
 }
 /// Of a link: in the affine rule the quadratic part is that of the volume, (12a). The linear one stays beside it: links of a material with little strength
 /// collapse without, at unchanged volume.

@@ -31,13 +31,15 @@ MCA_INLINE double criterion(double ofOthers, double damage, double strength) { r
 struct LinkEnd {
 	double criterion, s, J, P, strength; ///< s: J times the normal stress of this side [Pa]
 };
-inline bool breaks(const Fracture& f, const LinkEnd& a, const LinkEnd& b, double r2, double d)
+/// rule: of the pair of materials.
+inline bool breaks(const Fracture& f, const LinkEnd& a, const LinkEnd& b, double r2, double d, const PairRule& rule = {})
 {
-	if (0.5 * (a.criterion + b.criterion) >= 1.) return true;
+	if (0.5 * (a.criterion + b.criterion) >= rule.strength) return true;
 	if (r2 < sqr(collapsed * d)) return true; // sheared so far that the packing is gone: what follows is contact
-	if (!std::isfinite(f.pairStress)) return false;
+	const double limit = min(f.pairStress, rule.tension);
+	if (!std::isfinite(limit)) return false;
 	const double tension = 0.5 * (a.s / a.J + b.s / b.J - a.P - b.P); // mean of both sides
-	return tension >= 0.5 * f.pairStress * (a.strength + b.strength);
+	return tension >= 0.5 * limit * (a.strength + b.strength);
 }
 
 /// Why a link broke; the first four are the criteria of automata.
@@ -52,10 +54,11 @@ struct CriteriaApart {
 	{
 	}
 };
-/// Of a link that breaks: the criterion with the largest mean where the mean of the ends' largest reaches 1, else what breaks() asks next.
-inline BreakCause causeOf(const LinkEnd& a, const LinkEnd& b, const CriteriaApart& ofA, const CriteriaApart& ofB, double r2, double d)
+/// Of a link that breaks: the criterion with the largest mean where the mean of the ends' largest reaches the limit, else what breaks() asks next.
+inline BreakCause causeOf(
+	const LinkEnd& a, const LinkEnd& b, const CriteriaApart& ofA, const CriteriaApart& ofB, double r2, double d, const PairRule& rule = {})
 {
-	if (!(0.5 * (a.criterion + b.criterion) >= 1.)) return r2 < sqr(collapsed * d) ? BreakCause::collapsed : BreakCause::pairStress;
+	if (!(0.5 * (a.criterion + b.criterion) >= rule.strength)) return r2 < sqr(collapsed * d) ? BreakCause::collapsed : BreakCause::pairStress;
 	int most = 0;
 	for (int k = 1; k < 4; k++)
 		if (ofA.of[k] + ofB.of[k] > ofA.of[most] + ofB.of[most]) most = k;

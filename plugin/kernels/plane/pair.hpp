@@ -3,6 +3,7 @@
 // Formulation, equations (5f), (6)-(11). t = n turned by +90 degrees.
 #pragma once
 #include "../automaton/deviator.hpp"
+#include "../deviator.hpp"
 
 namespace mca {
 inline namespace MCA_SPACE {
@@ -20,6 +21,14 @@ template <class T> using Side = Pair<T>;
 template <class T> MCA_INLINE Pair<T> scaled(Pair<T> a, T f) { return { a.normal * f, a.shear * f }; }
 /// a where it holds, else none
 MCA_INLINE Pair<double> where(bool holds, Pair<double> a) { return { holds ? a.normal : 0., holds ? a.shear : 0. }; }
+/// What a side along r holds of a stress, and what is normal to the plane [Pa].
+inline Pair<double> sideOf(const Deviator& s, Vec<double> r)
+{
+	const double      per = 1. / std::sqrt(dot(r, r));
+	const Vec<double> n   = r * per, on { s.xx * n[0] + s.xy * n[1], s.xy * n[0] + s.yy * n[1] };
+	return { dot(on, n), cross(n, on) };
+}
+inline double outOfPlane(const Deviator& s) { return s.zz; }
 /// Mean of both sides of a pair, over the area that each has a half of.
 MCA_INLINE Pair<double> ofBothSides(double area, Pair<double> mine, Pair<double> theirs)
 {

@@ -3,9 +3,12 @@
 // of a pair, against what the pair does beside that: none in a uniform state. Sides of contacts, and of links that span no volume, hold all of it.
 #pragma once
 #include "../automaton/deviator.hpp"
+#include "../deviator.hpp"
 
 namespace mca {
 inline namespace MCA_SPACE {
+
+inline Symmetric<double> symmetricOf(const Deviator& s) { return { s.xx, s.yy, s.zz, s.yz, s.zx, s.xy }; }
 
 /// What a side of a pair holds.
 template <class T> using Side = Vec<T>;

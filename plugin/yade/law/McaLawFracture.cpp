@@ -16,13 +16,14 @@ using mca::VolumeRule;
 bool Loop::breaks(const Row& r, int k) const
 {
 	const Side& s = r.link[k];
-	if (!r.material->fracture.active()) return false;
+	if (!r.material->fracture.active() && !rules.weakest(materialOf(r)).tension) return false;
 	const auto end = [&](const Row& a, int side, Vec toOther) {
 		const Real normal = mca::normalStress(wholeStress(*a.m, *a.l, stressOf(*s.p, side), toOther), toOther);
 		return mca::LinkEnd { a.l->criterion, normal, a.m->volumeRatio, a.m->pressure, a.m->strength };
 	};
 	const Vec x = between(r, s);
-	return mca::breaks(r.material->fracture, end(r, s.side, x), end(rows[size_t(s.other)], 1 - s.side, -x), distance2(r, s), s.p->d);
+	const Row& o = rows[size_t(s.other)];
+	return mca::breaks(r.material->fracture, end(r, s.side, x), end(o, 1 - s.side, -x), distance2(r, s), s.p->d, ruleOf(r, o));
 }
 
 void Loop::breakLinks()

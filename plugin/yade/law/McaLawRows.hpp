@@ -60,6 +60,9 @@ private:
 	vector<int>                relinked; ///< ids whose links have changed because bodies were erased or added
 	vector<mca::Material>      materials;
 	vector<const McaMat*>      known;
+	mca::PairRules             rules; ///< of materials
+	int                        materialOf(const Row& r) const { return int(r.material - materials.data()); }
+	const mca::PairRule&       ruleOf(const Row& a, const Row& b) const { return rules.of(materialOf(a), materialOf(b)); }
 	long                       revision = 0; ///< grows when constants of pairs have changed
 	void                       forget();
 	void                       lastMotion(Row&) const;

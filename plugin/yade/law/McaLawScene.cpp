@@ -2,6 +2,7 @@
 // McaLaw: which bodies and pairs there are in this step. Links are made when an automaton is first seen, and follow bodies that are added and erased.
 #include "../McaBodies.hpp"
 #include "../McaCast.hpp"
+#include "../McaPairRules.hpp"
 #include "McaLawRows.hpp"
 #include "automata/start.hpp"
 #include <atomic>
@@ -77,7 +78,7 @@ void Loop::takeIn(Scene* scene)
 {
 	for (const Row& r : rows)
 		if (!r.l) checkUntouched(r);
-	const McaBodies   bodies(*scene, law.seed, mca::dim);
+	const McaBodies   bodies(*scene, law.seed, mca::dim, law.linkAcrossMasks);
 	vector<automata::Automaton> all;
 	for (const auto& a : bodies.automata) all.push_back(automata::startOf(a));
 	automata::Options o;
@@ -116,7 +117,7 @@ void Loop::takeIn(Scene* scene)
 		if (!fresh && !sameLinks(l, S.flags[i], partner)) relinked.push_back(id);
 		l.flags = S.flags[i], l.partner = partner, l.invN = S.invN[i];
 		if (!fresh) continue;
-		l.triangles = r.m->triangles, l.dimension = mca::dim;
+		l.triangles = r.m->triangles, l.dimension = mca::dim, l.acrossMasks = law.linkAcrossMasks;
 		l.cell = S.cell[i], l.rest = S.rest[i], l.factor = S.factor[i], l.rule = int(o.volumeRule), l.diameter = r.d;
 		r.m->volumeRatio = S.J[i], l.P = S.P[i], r.m->pressure = S.mean[i];
 	}
@@ -195,8 +196,11 @@ void Loop::readMaterials(Scene* scene)
 	bool same = all == known;
 	for (size_t i = 0; same && i < all.size(); i++)
 		same = mca::samePairs(constants[i], materials[i]);
+	const vector<const Material*> names(all.begin(), all.end());
+	const mca::PairRules          now = pairRulesOf(law.pairMaterials, law.pairNumbers, names);
+	same &= now == rules;
 	if (!same) revision = ++revisions;
-	known = all, materials = constants;
+	known = all, materials = constants, rules = now;
 	for (size_t i = 0; i < rows.size(); i++)
 		rows[i].material = &materials[which[i]];
 }
@@ -209,8 +213,9 @@ void Loop::pairConstants(const Row& r, const Side& s) const
 	if (p.revision == revision && p.madeOf[0] == a.mat && p.madeOf[1] == b.mat) return;
 	p.revision = revision, p.madeOf[0] = a.mat, p.madeOf[1] = b.mat;
 	p.twoG       = mca::seriesTwoG(a.material->G, b.material->G, p.arm);
-	p.friction   = std::min(a.material->friction, b.material->friction);
-	const auto v = mca::viscosityOf(*a.material, *b.material);
+	const auto& rule = ruleOf(a, b);
+	p.friction   = mca::frictionOf(*a.material, *b.material, rule);
+	const auto v = mca::viscosityOf(*a.material, *b.material, rule);
 	p.viscLinear = v.linear, p.viscQuadratic = v.quadratic;
 }
 

@@ -15,7 +15,8 @@ namespace {
 		{
 			const auto A = mca::Flags(la.flags), B = mca::Flags(lb.flags);
 			const auto of = [](const McaLawState& l) { return [&l](int k) { return l.partner[size_t(k)]; }; };
-			return mca::mayTouch(A, B, a.groupMask == b.groupMask) && !mca::heldByNeighbour(a.id, A, la.factor, of(la), b.id, B, lb.factor, of(lb));
+			const bool sameBody = (la.acrossMasks && lb.acrossMasks) || a.groupMask == b.groupMask;
+			return mca::mayTouch(A, B, sameBody) && !mca::heldByNeighbour(a.id, A, la.factor, of(la), b.id, B, lb.factor, of(lb));
 		}
 		Real width(Real diameter) const override { return mca::Lattice::width(diameter); }
 		int  links() const override { return mca::nLinks; }
