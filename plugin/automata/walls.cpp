@@ -92,7 +92,17 @@ void Walls::look(const Solver& solver, size_t block, double level)
 		if (way < 0.5 * d) n.walls.push_back(int32_t(w)), n.slack = min(n.slack, 0.5 * d);
 		else n.slack = min(n.slack, way);
 	}
-	if (!n.walls.empty()) n.slack = 0.5 * d; // those left out are farther
+	n.lanes.clear();
+	if (n.walls.empty()) return;
+	n.slack = 0.5 * d; // those left out are farther
+	for (size_t i = block * blockSize; i < block * blockSize + size_t(S.blocks[block].count); i++) {
+		const Point x = pointOf(S.position.at(i), level);
+		for (int32_t w : n.walls)
+			if (isNear(bounds[size_t(w)], x, d * (1. + 1e-9))) {
+				n.lanes.push_back(int32_t(i));
+				break;
+			}
+	}
 }
 
 bool Walls::hidden(const WallGap& gap, double d) const
@@ -144,9 +154,9 @@ void Walls::pushBlock(Solver& solver, size_t block, const std::vector<WallPlace>
 		size_t  wall;
 	};
 	std::vector<Met> met;
-	for (size_t i = block * blockSize; i < block * blockSize + size_t(S.blocks[block].count); i++) {
-		const double     d = S.diameter[i];
-		const Point      x = pointOf(S.position.at(i), level);
+	for (const int32_t i : near[block].lanes) {
+		const double     d = S.diameter[size_t(i)];
+		const Point      x = pointOf(S.position.at(size_t(i)), level);
 		met.clear();
 		for (int32_t w : near[block].walls) {
 			if (!isNear(bounds[size_t(w)], x, 0.5 * d)) continue;
@@ -155,11 +165,12 @@ void Walls::pushBlock(Solver& solver, size_t block, const std::vector<WallPlace>
 		}
 		if (met.empty()) continue;
 		found.clear();
-		std::stable_sort(met.begin(), met.end(), [](const Met& a, const Met& b) { return a.gap.distance < b.gap.distance; });
+		if (met.size() > 1) // it takes memory
+			std::stable_sort(met.begin(), met.end(), [](const Met& a, const Met& b) { return a.gap.distance < b.gap.distance; });
 		stiffness = 0;
 		for (const Met& m : met) {
 			if (hidden(m.gap, d)) continue;
-			touch(solver, i, m.wall, m.gap, places[m.wall]);
+			touch(solver, size_t(i), m.wall, m.gap, places[m.wall]);
 			found.push_back(m.gap);
 		}
 		stiffest = max(stiffest, stiffness);

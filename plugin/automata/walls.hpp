@@ -29,6 +29,7 @@ private:
 		double               slack = 0; ///< travel of block and walls that changes nothing [m]
 		double               from = 0;  ///< travel of both at the last look [m]
 		std::vector<int32_t> walls;     ///< that may touch someone in it
+		std::vector<int32_t> lanes;     ///< automata that they may touch
 	};
 	void   follow(const std::vector<WallPlace>& places);
 	void   look(const Solver& solver, size_t block, double level);

@@ -55,8 +55,9 @@ void McaEngine::load(int kind, const vector<int>& ids, const py::object (&along)
 		if ((given[c] = !along[c].is_none()))
 			tables[c] = tableOf(along[c], (where + (along3 ? string(1, char('x' + c)) : scalar)).c_str());
 	if (!(given[0] || given[1] || given[2]))
-		throw mca::Error(where + (along3 ? string("give at least one of x, y, z") : string(scalar) + " is missing") + ": a number or a pair (times, "
-		    "values).");
+		throw mca::Error(
+			where + (along3 ? string("give at least one of x, y, z") : string(scalar) + " is None; it must be given")
+			+ ": a number or a pair (times, values).");
 	for (Real T : kind == temperatureOf ? tables[0].value : std::vector<double>())
 		if (!(T > coldest && T <= hottest)) throw mca::Error(where + "temperature = " + numberText(T) + " K must be above 0 and at most 1e9.");
 	locked([&] {

@@ -23,7 +23,7 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from ._arguments import array, number
+from ._arguments import array, number, numbersOfAnyShape
 
 __all__ = ['Fragments', 'RodMeasure', 'craterDepth', 'cumulative', 'fragments', 'fragmentsOf', 'geometricLength', 'gradyKipp', 'meanAround', 'momentumSettled', 'mott', 'rearClearance', 'rodMeasure', 'speedAlong']
 
@@ -216,43 +216,54 @@ def fragments(ids, links, mass, positions, velocity, volume):
 	ids (N,) int; links: pairs of ids, (M, 2) or a list, those that hold; mass (N,) [kg]; positions, velocity (N, dim) [m], [m/s], dim 2 or 3; volume (N,) at rest [m3, in
 	the plane m2], above 0. Raises ValueError for arrays that do not belong together and for a link of an unknown id.
 	"""
-	from scipy.sparse import coo_matrix
-	from scipy.sparse.csgraph import connected_components
-	x = array('positions', positions, ValueError, ((None, 2), (None, 3)))
+	x, v, m, V, ids, pairs = _checked(ids, links, mass, positions, velocity, volume)
 	n, dim = x.shape
-	v, m, V = array('velocity', velocity, ValueError, (n, dim)), array('mass', mass, ValueError, (n, )), array('volume', volume, ValueError, (n, ))
-	ids = np.asarray(ids)
-	if ids.shape != (n, ) or len(np.unique(ids)) < n: raise ValueError('ids must be %d different whole numbers, one for each position' % n)
-	if not (V > 0).all() or not (m > 0).all(): raise ValueError('mass and volume must be above 0')
-	pairs = np.asarray(links, int).reshape(-1, 2)
-	order = np.argsort(ids)
-	place = np.searchsorted(ids, pairs, sorter=order)
-	if len(pairs) and not ((place < n).all() and (ids[order[place]] == pairs).all()): raise ValueError('links name an id that is not in ids')
-	a, b = order[place].T if len(pairs) else (np.zeros(0, int), ) * 2
-	found, label = connected_components(coo_matrix((np.ones(len(a)), (a, b)), shape=(n, n)), directed=False)
-	total = np.bincount(label, m, found)
-	heaviest = np.argsort(-total, kind='stable')
-	rank = np.empty(found, int)
+	label = _connected(ids, pairs)
+	heaviest = np.argsort(-np.bincount(label, m), kind='stable')
+	found, rank = len(heaviest), np.empty(len(heaviest), int)
 	rank[heaviest] = np.arange(found)
 	label = rank[label]
 
 	def sums(values):
 		return np.stack([np.bincount(label, values[:, c], found) for c in range(values.shape[1])], axis=1)
 
-	total = np.bincount(label, m, found)
+	total, whole = np.bincount(label, m, found), np.bincount(label, V, found)
 	centre = sums(m[:, None] * x) / total[:, None]
 	off = x - centre[label]
 	moments = sums((m[:, None, None] * off[:, :, None] * off[:, None, :]).reshape(n, dim * dim)).reshape(found, dim, dim) / total[:, None, None]
-	each = (4 * V / math.pi)**0.5 if dim == 2 else (6 * V / math.pi)**(1 / 3)  # diameter of one automaton
-	own = np.bincount(label, m * each**2, found) / total / (4 * (dim + 2))  # a ball's own second moment along an axis
+	diameter = lambda volume: (4 * volume / math.pi)**0.5 if dim == 2 else (6 * volume / math.pi)**(1 / 3)
+	own = np.bincount(label, m * diameter(V)**2, found) / total / (4 * (dim + 2))  # a ball's own second moment along an axis
 	spread = np.linalg.eigvalsh(moments + own[:, None, None] * np.eye(dim))
-	whole = np.bincount(label, V, found)
-	size = (4 * whole / math.pi)**0.5 if dim == 2 else (6 * whole / math.pi)**(1 / 3)
-	return Fragments(label, np.bincount(label, minlength=found), total, centre, sums(m[:, None] * v) / total[:, None], size, np.sqrt(spread[:, -1] / spread[:, 0]))
+	return Fragments(
+		label, np.bincount(label, minlength=found), total, centre, sums(m[:, None] * v) / total[:, None], diameter(whole), np.sqrt(spread[:, -1] / spread[:, 0]))
+
+
+def _checked(ids, links, mass, positions, velocity, volume):
+	"""Arguments of fragments() as arrays."""
+	x = array('positions', positions, ValueError, ((None, 2), (None, 3)))
+	n = len(x)
+	v, m, V = array('velocity', velocity, ValueError, x.shape), array('mass', mass, ValueError, (n, )), array('volume', volume, ValueError, (n, ))
+	ids = array('ids', ids, ValueError, (n, ))
+	if len(np.unique(ids)) < n or (ids != np.round(ids)).any(): raise ValueError('ids must be %d different whole numbers, one for each position; got %s' % (n, ids))
+	for name, values in ('mass', m), ('volume', V):
+		if not (values > 0).all(): raise ValueError('%s must be above 0; the smallest is %g' % (name, values.min()))
+	return x, v, m, V, ids, array('links', links, ValueError, (None, 2), empty=True)
+
+
+def _connected(ids, pairs):
+	"""A number for each of what is connected by pairs of ids, (N,) int."""
+	from scipy.sparse import coo_matrix
+	from scipy.sparse.csgraph import connected_components
+	n, order = len(ids), np.argsort(ids)
+	place = np.searchsorted(ids, pairs, sorter=order)
+	if not ((place < n).all() and (ids[order[np.minimum(place, n - 1)]] == pairs).all()): raise ValueError('links name an id that is not in ids')
+	a, b = order[place].T
+	return connected_components(coo_matrix((np.ones(len(a)), (a, b)), shape=(n, n)), directed=False)[1]
 
 
 def fragmentsOf(engine):
-	"""fragments() of the automata of a McaEngine now, in the order of engine.ids; volumes at rest are those of the masses."""
+	"""fragments() of the automata of a McaEngine now, in the order of engine.ids; volumes at rest are those of the masses. Raises ValueError for another engine."""
+	if not hasattr(engine, 'fields') or not hasattr(engine, 'links'): raise ValueError('engine must be a McaEngine; got %r' % (engine, ))
 	dim = engine.dimension
 	names = ('ids', 'mass', 'diameter', 'weight') + tuple('xyz'[:dim]) + tuple('v' + c for c in 'xyz'[:dim])
 	f = engine.fields(names)
@@ -264,17 +275,25 @@ def fragmentsOf(engine):
 def cumulative(mass):
 	"""Cumulative distribution of fragments: (mass rising (F,), number of fragments at least as heavy (F,))."""
 	m = np.sort(array('mass', mass, ValueError, (None, )))
+	if not m[0] > 0: raise ValueError('mass must be above 0; the smallest is %g' % m[0])
 	return m, np.arange(len(m), 0, -1)
 
 
 def mott(mass, number, mean):
 	"""Mott's distribution of plates that break into pieces of two dimensions: number exp(-sqrt(2 m/mean)), of mean mass `mean` (N. F. Mott, Proc. R. Soc. A 189, 1947).
 
-	mass: where [kg], any shape; number: of all fragments. Returns how many are heavier than that.
+	mass: where [kg], any shape; number: of all fragments. Returns how many are heavier than that. Raises ValueError for numbers that are none or below 0.
 	"""
-	return number * np.exp(-np.sqrt(2 * np.asarray(mass, float) / mean))
+	m, n, mean = _distribution(mass, number, mean)
+	return n * np.exp(-np.sqrt(2 * m / mean))
 
 
 def gradyKipp(mass, number, mean):
 	"""Distribution of a body that breaks at random: number exp(-m/mean) (D. E. Grady and M. E. Kipp, J. Appl. Phys. 58, 1985). Arguments as mott()."""
-	return number * np.exp(-np.asarray(mass, float) / mean)
+	m, n, mean = _distribution(mass, number, mean)
+	return n * np.exp(-m / mean)
+
+
+def _distribution(mass, count, mean):
+	"""Checked arguments of a distribution."""
+	return numbersOfAnyShape('mass', mass, ValueError, 0.), number('number', count, ValueError, low=0.), number('mean', mean, ValueError, above=0.)

@@ -60,6 +60,14 @@ def strips():
 	return scenes.plateImpact('4340', '4340', 4 * D, 4 * D, 6 * D, D, 50.)
 
 
+def anEngine():
+	from yade import O
+	from yade.wrapper import McaEngine
+	bodies()
+	O.engines = [McaEngine()]
+	return O.engines[0]
+
+
 #: right arguments by name; functions make fresh ones. Where a name means different things: 'module.function.name'
 GOOD = {
         'd': D, 'spacing': D, 'outline': rectangle, 'angle': 0., 'origin': (0., 0.), 'rim': 'cells', 'minWeight': 0.2, 'dim': None,
@@ -77,6 +85,7 @@ GOOD = {
         'eos': 'shockAdiabat', 'viscosity': 1., 'seed': 1, 'part': 'rod', 'normal': (0., -1.), 'begin': 0., 'rows': 4, 'anvil': 'smooth',
         'obliquity': 0., 'vx': 10., 's': penetrationScene, 'scenes.profile.s': strips, 'scenes.profile.part': 'flyer', 'scenes.driveEnd.s': strips,
         'scenes.addStrip.packing': lambda: packing().translated((0.5, 0.)), 'scenes.driveEnd.part': 'flyer', 'scenes.taylorBar.anvil': 'rough',
+        'ids': [0, 1], 'links': [(0, 1)], 'number': 10., 'mean': 2., 'measure.fragments.velocity': [(0., -90.), (0., -80.)], 'measure.fragmentsOf.engine': anEngine,
         'measure.rodMeasure.velocity': [(0., -90.), (0., -80.)], 'measure.speedAlong.velocity': [(0., -90.), (0., -80.)],
         'packings.resetStates.ids': bodies, 'packings.clump.ids': bodies, 'packings.cellGeometry.name': 'hexagonal', 'packings.create.name': 'hexagonal', 'scenes.tiedPlate.largest': 3.,
         'materials.Material.flowStress.plasticStrain': 0.1, 'materials.Material.johnsonCookFractureStrain.triaxiality': 0.3,
