@@ -59,7 +59,7 @@ namespace {
 		void resist(double share) override { solver.resist(share); }
 		void checkStress(int id, double pressure, const Deviator& deviator) const override { solver.checkStress(at(id), pressure, deviator); }
 		void setStress(int id, double pressure, const Deviator& deviator) override { solver.setStress(at(id), pressure, deviator); }
-		void setPairRules(const PairRules& rules) override { solver.setPairRules(rules); }
+		void setPairRules(const PairRules& rules, bool loaded) override { solver.setPairRules(rules, loaded); }
 		void clearForces() override { solver.clearForces(); }
 		bool hasForces() const override { return !S.outside.empty(); }
 		void setDamping(int id, const Triple& b) override { solver.setDamping(at(id), vectorOf(b)); }

@@ -105,7 +105,7 @@ public:
 	virtual void resist(double share) = 0;
 	virtual void checkStress(int id, double pressure, const Deviator& deviator) const = 0;
 	virtual void setStress(int id, double pressure, const Deviator& deviator) = 0;
-	virtual void setPairRules(const PairRules& rules) = 0;
+	virtual void setPairRules(const PairRules& rules, bool loaded) = 0;
 	virtual void clearForces() = 0;
 	virtual bool hasForces() const = 0; ///< some have been added at some time
 	virtual void setDamping(int id, const Triple& b) = 0;

@@ -40,6 +40,7 @@ template <class F> void Solver::eachBreaking(F&& f) const
 			for (int k = 0; k < nLinks; k++) {
 				if (!holds(S.flags[i], k)) continue;
 				const size_t j = S.neighbour[linkSlot(i, k)];
+				if (!m.fracture.active() && !std::isfinite(S.ruleOf(S.speciesOf(i), S.speciesOf(j)).tension)) continue;
 				const LinkEnd a = linkEnd(i, k), b = linkEnd(j, Lattice::opposite(k));
 				if (mca::breaks(m.fracture, a, b, S.distance2(i, j), S.restDistance(i, j), S.ruleOf(S.speciesOf(i), S.speciesOf(j)))
 				    && f(i, k))

@@ -72,8 +72,12 @@ public:
 	/// moves. Who has no volume by its links gets the deviator alone. Throws Error where the material does not bear it.
 	void   setStress(size_t i, double pressure, const Deviator& deviator);
 	void   checkStress(size_t i, double pressure, const Deviator& deviator) const; ///< throws what setStress() would
-	/// Of pairs of materials; counts from the next computeForces() on.
-	void   setPairRules(const PairRules& rules) { store.pairRules = rules, searchDue = true; }
+	/// Of pairs of materials; others than before count from the next computeForces() on. loaded: the contacts of a saved state have them already.
+	void   setPairRules(const PairRules& rules, bool loaded = false)
+	{
+		searchDue |= !loaded && !(rules == store.pairRules);
+		store.pairRules = rules;
+	}
 	/// Viscous (transmitting) boundary: force -b v, b = rho c A [kg/(m s)] per direction.
 	void setDamping(size_t i, Vec<double> b);
 	/// Automaton i is carried by others from now on: it keeps no mass of its own in the sums and moves with the velocity it is told.

@@ -352,18 +352,24 @@ void Grid::checkCells(const Block& b, const CellFields& f) const
 		refuse("a stress cannot be given where the equation of state has an internal energy "
 		    "(mieGruneisen); "
 		            "choose another eos, or load the grid instead.");
-	for (size_t k = 0; k < f.pressure.size(); k++) {
+	const auto given = [](const std::vector<double>& v, size_t k, double before) { return v.empty() ? before : v[k]; };
+	for (size_t k = 0; k < n; k++) {
 		const int    i = int(k) % b.ni, j = int(k) / b.ni;
-		const double strain = f.eqps.empty() ? b.eqps[b.cell(i, j)] : f.eqps[k];
-		const double here = b.temperature ? b.temperature[b.cell(i, j)] : b.material.yield.referenceTemperature;
-		const double T    = f.temperature.empty() ? here : f.temperature[k];
-		const double sigma = Deviator { f.sxx[k], f.syy[k], -f.sxx[k] - f.syy[k], 0., 0., f.sxy[k] }.mises();
+		const size_t c = b.cell(i, j);
+		const double sxx = given(f.sxx, k, b.sxx[c]), syy = given(f.syy, k, b.syy[c]), sxy = given(f.sxy, k, b.sxy[c]);
+		const double strain = given(f.eqps, k, b.eqps[c]);
+		const double T = given(f.temperature, k, b.temperature ? b.temperature[c] : b.material.yield.referenceTemperature);
+		const double sigma = Deviator { sxx, syy, -sxx - syy, 0., 0., sxy }.mises();
 		const double limit = dispatch(b.material.yield.kind, [&](auto law) {
 			return LawOf<law.value>::yields ? staticYield<law.value>(b.material.yield, strain, T).stress : std::numeric_limits<double>::infinity();
 		});
 		if (sigma > limit * (1. + 1e-12) || (b.material.G == 0. && sigma > 0.))
 			throw Error(b.cellName(i, j) + ": the stress has a Mises stress of " + text(sigma) + " Pa, and the material flows at "
 			            + text(b.material.G == 0. ? 0. : limit) + " Pa; give less.");
+		if (f.pressure.empty()) continue;
+		if (f.pressure[k] < -b.material.fracture.spall)
+			throw Error(b.cellName(i, j) + ": the tension of " + text(-f.pressure[k]) + " Pa is above spallStrength, "
+			            + text(b.material.fracture.spall) + " Pa; give less.");
 		restAreaAt(b.material.eos, b.area(i, j), f.pressure[k], b.cellName(i, j));
 	}
 }

@@ -146,7 +146,7 @@ void McaEngine::computeForces(Scene* scene)
 void McaEngine::forget()
 {
 	locked([&] {
-		if (!solver || solver->counters().steps > 0) return;
+		if (!solver || solver->counters().steps > 0 || stressGiven) return;
 		solver.reset();
 		letGo(bodies, same, known, walls), order.clear(), wallStarts.clear();
 		home.reset();

@@ -248,6 +248,7 @@ private:
 	int  lost   = -1;    ///< body whose change by a script was lost; told by the next step
 	bool stale  = false; ///< the bodies do not hold the present state
 	bool wrote  = false; ///< they hold what this engine has written, not only what a script or a file gave
+	bool stressGiven = false; ///< by setStress()
 	long lastMoved = -1; ///< step that moved the automata last
 	bool         warnedEmpty = false, warnedTension = false;
 	mutable bool warnedGravity = false;
@@ -282,9 +283,9 @@ private:
 	void              pushLoads(const Scene&);
 	void              driveLoads(const Scene&);
 	void              heatLoads(const Scene&);
-	void              checkLoads(const mca::Automata& of) const;
-	bool              isDriven(int id, int axis) const; ///< by prescribe()
-	void              givePairRules();
+	void              checkLoads(const mca::Automata* of) const;
+	void              checkDriven(const Body& b, const Vector3r& was) const;
+	void              givePairRules(bool loaded = false);
 	void              gatherWalls(Scene* scene);
 	void              pushWalls(Real lastStep);
 	void              tellWalls(Scene* scene);

@@ -67,11 +67,12 @@ void McaEngine::settleIn(Scene* scene)
 	if (present.get() != scene) throw mca::Error("McaEngine: it runs in a scene that is not the present one.");
 	const bool loaded = solver && bodies.empty() && !order.empty() && home.expired();
 	if (!loaded) {
-		if (!bodies.empty()) viscous.clear(), viscousZ.clear(), forgetLoads(); // of bodies that are gone; those given before the first step stay
+		if (!bodies.empty()) // what was given for bodies that are gone; what was given before the first step stays
+			viscous.clear(), viscousZ.clear(), forgetLoads(), letGo(pairMaterials, pairNumbers);
 		solver.reset();
 		letGo(bodies, same, known, walls), order.clear(), wallStarts.clear();
 		lost  = -1;
-		stale = forcesReady = false, looked = true, warnedEmpty = warnedTension = wrote = false, lastWritten = -1;
+		stale = forcesReady = stressGiven = false, looked = true, warnedEmpty = warnedTension = wrote = false, lastWritten = -1;
 		std::fill(std::begin(energyIndex), std::end(energyIndex), -1);
 	} else bind(scene);
 	home = present;
@@ -101,7 +102,7 @@ void McaEngine::bind(Scene* scene)
 	same.assign(order.size(), Same());
 	for (size_t q = 0; q < order.size(); q++)
 		takeConstants(q), takeResults(q);
-	givePairRules();
+	givePairRules(true);
 	looked = true;
 	if (!bodiesSaved) writeBodies(scene);
 }
@@ -112,11 +113,11 @@ Vector3r McaEngine::place(const mca::AutomatonNow& a, const State& s) const
 }
 
 /// Of the materials that its bodies have.
-void McaEngine::givePairRules()
+void McaEngine::givePairRules(bool loaded)
 {
 	vector<const Material*> materials;
 	for (const auto& m : known) materials.push_back(m.get());
-	solver->setPairRules(pairRulesOf(pairMaterials, pairNumbers, materials));
+	solver->setPairRules(pairRulesOf(pairMaterials, pairNumbers, materials), loaded);
 	for (const auto& m : pairMaterials)
 		if (std::find(materials.begin(), materials.end(), m.get()) == materials.end())
 			LOG_WARN("McaEngine.setPair: no automaton has the material '" << m->label << "' now; its rule waits for one.");

@@ -98,7 +98,7 @@ bool McaEngine::sameBodies(const Scene& scene) const
 		const auto& b = all[k];
 		if (!b) continue;
 		if (q < bodies.size() && b.get() == bodies[q].get()) {
-			if (int(k) != order[q]) return false;
+			if (int(k) != order[q] || b->clumpId != Body::ID_NONE) return false; // made rigid: it leaves
 			q++;
 		} else if (b->material.get() != foreign || !foreign) {
 			if (movesAlone(b)) return false;
@@ -128,7 +128,7 @@ vector<McaEngine::Change> McaEngine::changes(bool& rebuild)
 			soon(bodies[p]->groupMask), soon(bodies[p]->shape), soon(static_cast<const McaState&>(*same[p].state)),
 				soon(static_cast<const Sphere&>(*same[p].shape).radius);
 		}
-		if (!bodies[q] || untouched(q)) continue;
+		if (!bodies[q] || untouched(q) || bodies[q]->clumpId != Body::ID_NONE) continue;
 		const Change c = changeOf(q, rebuild);
 		if (c.motion() || c.angle || c.plasticStrain || c.damage || c.temperature || c.strength || c.mask || c.blocked) list.push_back(c);
 	}
@@ -152,8 +152,7 @@ McaEngine::Change McaEngine::changeOf(size_t q, bool& rebuild)
 	c.spin          = s.angVel != was.angVel;
 	c.angle         = !((s.se3.orientation.coeffs() - was.ori.coeffs()).norm() < 1e-12); // a quaternion is normalised anew on its way through a file
 	c.plasticStrain = differs(s.plasticStrain, was.plasticStrain), c.damage = differs(s.damage, was.damage);
-	c.temperature   = differs(s.temperature, was.temperature);
-	c.strength      = differs(s.strength, was.strength);
+	c.temperature   = differs(s.temperature, was.temperature), c.strength = differs(s.strength, was.strength);
 	c.mask          = b.groupMask != was.mask;
 	const mca::Ways free = freeWays(s), turns = freeTurns(s);
 	bool            sameFree = true;
@@ -164,11 +163,7 @@ McaEngine::Change McaEngine::changeOf(size_t q, bool& rebuild)
 	if (c.position || c.velocity || c.spin || c.angle) checkMotion(b, dimension);
 	if (tied && (c.position || c.velocity))
 		refuseBody(b, "it is tied to a grid, which moves it; its position and velocity cannot be set. Set those of the grid before the first step.");
-	for (int k = 0; c.velocity && k < dimension; k++)
-		if (s.vel[k] != was.vel[k] && isDriven(b.id, k))
-			refuseBody(
-				b, string("state.vel along ") + "xyz"[k] + " was set to " + numberText(s.vel[k])
-					+ " m/s, and prescribe() drives it there: prescribe() another velocity, or clearLoads() first.");
+	if (c.velocity) checkDriven(b, was.vel);
 	if (c.plasticStrain && !(s.plasticStrain >= 0 && s.plasticStrain <= 1e6))
 		refuseBody(b, "state.plasticStrain = " + numberText(s.plasticStrain) + " must be from 0 to 1e6.");
 	if (c.damage) checkDamage(b, s);

@@ -46,6 +46,7 @@ void McaEngine::dropLoads(const std::function<bool(int)>& goes)
 void McaEngine::load(int kind, const vector<int>& ids, const py::object (&along)[3], const char* call)
 {
 	const string where = string("McaEngine.") + call + ": ";
+	if (kind == pressureOf && volumeRule != "affine") throw mca::Error(where + "it needs volumeRule 'affine', not '" + volumeRule + "'.");
 	if (ids.empty()) throw mca::Error(where + "ids names no body; give the id of at least one automaton.");
 	Table        tables[3];
 	bool         given[3];
@@ -63,6 +64,7 @@ void McaEngine::load(int kind, const vector<int>& ids, const py::object (&along)
 	locked([&] {
 		const auto scene = Omega::instance().getScene();
 		settleIn(scene.get());
+		if (solver && looked) ensureBuilt(scene.get()); // bodies that have joined since are known, and keep what they get
 		const int n = solver ? dimension : dimensionOf(*scene);
 		if (n == 2 && given[2]) throw mca::Error(where + "z must be None, left out: it is for bodies in space, and these are in plane strain.");
 		for (int id : ids) automatonOf(*scene, id, call); // refuses what is none
@@ -130,25 +132,30 @@ void McaEngine::driveLoads(const Scene& scene)
 	}
 }
 
-bool McaEngine::isDriven(int id, int axis) const
+/// Throws where a script has set a velocity that a table would overwrite.
+void McaEngine::checkDriven(const Body& b, const Vector3r& was) const
 {
-	return std::any_of(loads.begin(), loads.end(), [&](const Load& l) {
-		return l.kind == velocityOf && l.axis == axis && std::find(l.ids.begin(), l.ids.end(), id) != l.ids.end();
-	});
+	for (const Load& l : loads) {
+		if (l.kind != velocityOf || b.state->vel[l.axis] == was[l.axis] || std::find(l.ids.begin(), l.ids.end(), b.id) == l.ids.end()) continue;
+		refuseBody(
+			b,
+			string("state.vel along ") + "xyz"[l.axis] + " was set to " + numberText(b.state->vel[l.axis])
+				+ " m/s, and prescribe() drives it there: prescribe() another velocity, or clearLoads() first.");
+	}
 }
 
-/// From a file; throws mca::Error when they are none.
-void McaEngine::checkLoads(const mca::Automata& of) const
+/// From a file; throws mca::Error when they are none. of: null where nothing has been gathered yet.
+void McaEngine::checkLoads(const mca::Automata* of) const
 {
 	Real ids = 0, points = 0;
 	bool good = true;
 	for (const Vector3r& v : loadRows) {
 		for (int c = 0; c < 3; c++) good &= v[c] >= (c == 2 ? 1 : 0) && v[c] < 1e9 && v[c] == std::floor(v[c]);
-		good &= good && v[0] < 3 * kinds && int(v[0]) % 3 < (v[0] < 3 * temperatureOf ? of.dimension() : 1);
+		good &= good && v[0] < 3 * kinds && int(v[0]) % 3 < (v[0] >= 3 * temperatureOf ? 1 : of ? of->dimension() : 3);
 		ids += v[1], points += v[2];
 	}
 	good &= ids == Real(loadIds.size()) && points == Real(loadPoints.size());
-	for (int id : loadIds) good &= of.holds(id);
+	for (int id : loadIds) good &= of ? of->holds(id) : id >= 0;
 	for (const Load& l : good ? loadList() : vector<Load>()) {
 		l.table.validate("a prescribed velocity, force, temperature or pressure");
 		for (Real T : l.table.value) good &= l.kind != temperatureOf || (T > coldest && T <= hottest);

@@ -76,6 +76,8 @@ namespace {
 
 void McaEngine::postLoad(McaEngine&)
 {
+	checkLoads(nullptr), checkPairRules(pairMaterials, pairNumbers, "McaEngine");
+	loads = loadList();
 	if (state.empty()) return;
 	vector<char>    bytes;
 	sdk::BlobReader in(state);
@@ -84,9 +86,8 @@ void McaEngine::postLoad(McaEngine&)
 	if (dimension != 2 && dimension != 3) throw mca::Error("McaEngine: dimension in the file is neither 2 nor 3; the file is damaged or was edited.");
 	shared_ptr<mca::Automata> fresh(mca::automataIn(dimension));
 	fresh->load(string(bytes.begin(), bytes.end()));
-	checkLoaded(*fresh, order, viscous, viscousZ), loadWalls(*fresh), checkLoads(*fresh), checkPairRules(pairMaterials, pairNumbers, "McaEngine");
+	checkLoaded(*fresh, order, viscous, viscousZ), loadWalls(*fresh), checkLoads(fresh.get());
 	solver = fresh;
-	loads  = loadList();
 	home.reset(), letGo(bodies, same, known, walls), wallStarts.clear();
 	looked = true, stale = false;
 	state.clear();
@@ -210,6 +211,7 @@ long McaEngine::cut(py::object pairs)
 
 void McaEngine::setPair(py::object first, py::object second, Real strength, Real pairStrength, py::object frictionAngle, Real viscosity)
 {
+	locked([&] { settleIn(Omega::instance().getScene().get()); }); // rules of a scene that is gone go with it
 	auto materials = pairMaterials; // nothing changes where something is refused
 	auto numbers   = pairNumbers;
 	addPairRule(materials, numbers, "McaEngine.setPair", first, second, strength, pairStrength, frictionAngle, viscosity);
@@ -259,12 +261,21 @@ void McaEngine::setStress(const vector<int>& ids, py::object stress)
 	if (ids.empty()) throw mca::Error("McaEngine.setStress: ids names no body; give the id of at least one automaton.");
 	const auto rows = stressRows(stress, ids.size());
 	read("setStress", [&] {
-		for (int id : ids) automatonOf(*home.lock(), id, "setStress");
+		const auto scene = home.lock();
+		if (!scene) throw std::runtime_error("McaEngine.setStress: the engine must stand in O.engines of the present scene.");
+		for (int id : ids) {
+			automatonOf(*scene, id, "setStress");
+			if (isMine(id)) continue;
+			throw std::runtime_error(
+				"McaEngine.setStress: ids: body " + std::to_string(id)
+				+ " is none of the automata of this engine yet; put the engine into O.engines, and pause a run in the background.");
+		}
 		const size_t n = rows[0].size();
 		if (dimension == 3 ? n != 6 : n > 4)
 			throw mca::Error("McaEngine.setStress: stress has rows of " + std::to_string(n) + " numbers; they must be "
 			                 + (dimension == 3 ? "6: xx, yy, zz, yz, zx, xy." : "3 or 4: xx, yy, xy (and zz)."));
 		if (!forcesReady) stale = true, solver->computeForces(); // the strain of the last step belongs to the state before
+		heatLoads(*scene);
 		const auto each = [&](auto&& f) {
 			for (size_t q = 0; q < ids.size(); q++) {
 				const mca::Material& m = solver->materials()[size_t(solver->fixed(ids[q]).material)];
@@ -275,8 +286,8 @@ void McaEngine::setStress(const vector<int>& ids, py::object stress)
 		each([&](int id, const mca::SplitStress& s) { solver->checkStress(id, s.pressure, s.deviator); }); // all, before any is changed
 		each([&](int id, const mca::SplitStress& s) { solver->setStress(id, s.pressure, s.deviator); });
 		solver->moved();
-		forcesReady = false, stale = true;
-		writeBodies(home.lock().get());
+		forcesReady = false, stale = stressGiven = true;
+		writeBodies(scene.get());
 	});
 }
 
@@ -332,6 +343,7 @@ void McaEngine::setViscous(const vector<int>& ids, const py::object& normal)
 	locked([&] {
 		const auto scene = Omega::instance().getScene();
 		settleIn(scene.get());
+		if (solver && looked) ensureBuilt(scene.get());
 		const int n = solver ? dimension : dimensionOf(*scene);
 		if (axis < 0 || axis >= n)
 			throw std::runtime_error(

@@ -119,14 +119,19 @@ mca::WallStart McaEngine::wallOf(const Scene& scene, const Body& b) const
 }
 
 namespace {
-	/// YADE makes the mass of a clump from the volumes of spheres, which in plane strain is not per m of thickness. members: their masses in all.
-	void checkClump(const Scene& scene, int id, Real members)
+	/// Of the automata of a clump: their masses, and those of their spheres.
+	struct Members {
+		Real mass = 0, spheres = 0;
+	};
+	/// YADE makes the mass of a clump from the volumes of spheres: in plane strain not per m of thickness, in space less than that of the packing.
+	void checkClump(const Scene& scene, int id, const Members& m)
 	{
 		const auto& clump = scene.bodies->body[size_t(id)];
-		if (!clump || !clump->state || clump->state->blockedDOFs == State::DOF_ALL || clump->state->mass >= 0.5 * members) return;
+		if (!clump || !clump->state || clump->state->blockedDOFs == State::DOF_ALL) return;
+		if (std::fabs(clump->state->mass - m.spheres) > 1e-3 * m.spheres) return;
 		refuseBody(
 			*clump,
-			"it is a clump of automata with a mass of " + numberText(clump->state->mass) + ", and that of its members is " + numberText(members)
+			"it is a clump of automata with a mass of " + numberText(clump->state->mass) + ", and that of its members is " + numberText(m.mass)
 				+ ": YADE takes the volume of spheres. Make it with packings.clump(ids), or set its state.mass and state.inertia.");
 	}
 } // namespace
@@ -136,14 +141,16 @@ void McaEngine::gatherWalls(Scene* scene)
 {
 	vector<shared_ptr<Body>>    found;
 	vector<mca::WallStart> starts;
-	std::map<int, Real>    clumps; ///< of automata: masses of their members
+	std::map<int, Members> clumps; ///< of automata
 	if (!wallsAreOthers(*scene) && !order.empty())
 		for (const auto& b : scene->bodies->body) {
 			if (!b || !mayBeTouched(*b) || movesAlone(b)) continue;
 			starts.push_back(wallOf(*scene, *b)), found.push_back(b);
-			if (isAutomaton(b)) clumps[b->clumpId] += b->state->mass;
+			if (!isAutomaton(b)) continue;
+			const Real r = static_cast<const Sphere&>(*b->shape).radius;
+			clumps[b->clumpId].mass += b->state->mass, clumps[b->clumpId].spheres += b->material->density * (4. / 3.) * M_PI * r * r * r;
 		}
-	for (const auto& [id, mass] : clumps) checkClump(*scene, id, mass);
+	for (const auto& [id, members] : clumps) checkClump(*scene, id, members);
 	const bool equal = starts.size() == wallStarts.size() && std::equal(starts.begin(), starts.end(), wallStarts.begin(), sameWall);
 	walls.swap(found);
 	letGo(found);

@@ -123,7 +123,8 @@ def clump(ids):
 	ids: two or more automata that addBodies() has made, whole numbers. Mass [kg, in plane strain kg/m] and inertia [kg m2, kg m] are those of the members, where
 	O.bodies.clump() would take the volumes of spheres; in plane strain motion along z and about x and y stays blocked. The mask is that of the first. What YADE has moves it (NewtonIntegrator with
 	a mask that has a bit of it), and automata of McaEngine touch it (12b); McaLaw refuses clumps of automata.
-	Raises PackingError for fewer than two ids, one that is named twice, is no automaton or belongs to a clump already.
+	The mean velocity by mass goes on; what is within 1 % of it, and spins, do not. Automata that an engine moves leave it in its next step. Raises PackingError for fewer than two ids, one that is
+	named twice, is no automaton or belongs to a clump already, for velocities that differ by more, and where the centre of mass is not that of the spheres.
 	"""
 	from ._yade import scene
 	from .packings import PackingError
@@ -132,6 +133,13 @@ def clump(ids):
 	for b in members:
 		if b.isClumpMember: raise PackingError('ids: body %d belongs to a clump already; each must stand alone' % b.id)
 	o, states = scene(), [b.state for b in members]
+	velocities, places, weights = (np.array(v) for v in ([tuple(s.vel) for s in states], [tuple(s.pos) for s in states], [s.mass for s in states]))
+	mean = weights @ velocities / weights.sum()
+	spread = abs(velocities - mean).max()
+	if spread > 0.01 * abs(velocities).max(): raise PackingError('ids: velocities must be those of one motion; they differ by %.3g m/s from their mean, and a clump has but that' % spread)
+	radii = np.array([b.shape.radius for b in members])
+	off = np.linalg.norm(weights @ places / weights.sum() - radii**3 @ places / (radii**3).sum())  # YADE puts the centre by the volumes of spheres
+	if off > 1e-3 * radii.max(): raise PackingError("ids: the centre of mass is %.3g m off that of spheres; use automata of one size and of whole cells (rim='full')" % off)
 	number = o.bodies.clump([b.id for b in members])
 	body, mass = o.bodies[number], sum(s.mass for s in states)
 	body.mask, s = members[0].mask, body.state
@@ -140,7 +148,7 @@ def clump(ids):
 		s.inertia, s.blockedDOFs = (around, ) * 3, 'zXY'  # the same about all axes: YADE turns the frame of a clump as it likes
 	else:
 		s.inertia = s.inertia * (mass / s.mass)
-	s.mass = mass
+	s.mass, s.vel = mass, mean.tolist()
 	return number
 
 

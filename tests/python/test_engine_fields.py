@@ -73,6 +73,18 @@ def test_whatIsOutOfBalanceIsLedToRest(plugin):
 	assert fastest(e) < 1e-6 and abs(scene.states(ids) - rest)[:, :2].max() < 1e-9 * D
 
 
+def test_aSmallLoadBesideALargeStressIsLedToRest(plugin):
+	"""What is in balance stores much; the little that is added must still move."""
+	ids, _ = bodies(3, n=3, rim='faces')
+	e = scene.engine(DT)
+	e.setStress(ids, (-1e9, -1e9, -1e9, 0, 0, 0))
+	e.press(ids, 1e9)
+	e.press(ids, 1e5)
+	before = np.median(e.field('pressure'))
+	assert equilibrium.relax(e) > 100
+	assert np.median(e.field('pressure')) - before == pytest.approx(1e5, rel=0.02)
+
+
 def test_relaxRefuses(plugin):
 	from yade import O
 	ids, _ = bodies(2)
@@ -121,6 +133,12 @@ def test_stressIsRefused(plugin):
 		e.setStress([99999], (0, 0, 0))
 	with pytest.raises(RuntimeError, match='at least one'):
 		e.setStress([], (0, 0, 0))
+	from yade_mca import McaEngine
+	other = McaEngine()  # in no O.engines
+	other.setStress(ids[:3], (1e6, 0, 0))
+	more = packings.addBodies(packings.hexagonal(D, packings.disc((50 * D, 0), 1.2 * D)), O.bodies[ids[0]].mat)
+	with pytest.raises(RuntimeError, match='none of the automata of this engine'):
+		other.setStress(more, (1e6, 0, 0))
 
 
 @pytest.mark.parametrize('dimension', (2, 3))

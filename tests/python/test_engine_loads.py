@@ -204,3 +204,39 @@ def test_materialsChangeFromStageToStage(plugin):
 	O.run(50, True)
 	sigma = e.field('equivalentStress')
 	assert sigma[:20].max() < 0.1e9 * 1.0001 and sigma.max() > 0.2e9
+
+
+def test_loadsGivenBeforeTheFirstStepAreSaved(plugin, tmp_path):
+	from yade import O
+	found = []
+	for again in False, True:
+		O.reset()
+		ids = scene.block(6, 6).tolist()
+		e = scene.engine(DT)
+		e.prescribe(ids[:4], x=5.)
+		e.press(ids, 1e8)
+		e.push(ids[-3:], y=1e5)
+		if again: O.save(str(tmp_path / 's.yade.gz')), O.load(str(tmp_path / 's.yade.gz'))
+		O.run(30, True)
+		O.bodies.erase(ids[-1])
+		O.engines[0].push(ids[-2:-1], x=1e5)
+		O.run(30, True)
+		found.append(scene.states(ids[:-1]))
+	assert np.array_equal(*found) and found[0][0, 2] == 5
+
+
+def test_bodiesThatJoinInAPauseKeepWhatTheyGet(plugin):
+	from yade import O
+	ids = scene.block(6, 6).tolist()
+	e = scene.engine(DT)
+	O.run(5, True)
+	new = scene.block(3, 3, at=(0, 9 * D), mask=2).tolist()
+	e.prescribe(new, x=7., y=0)
+	O.run(5, True)
+	assert (scene.states(new)[:, 2] == 7).all()
+
+
+def test_pressNeedsTheAffineRule(plugin):
+	ids = scene.block(6, 6).tolist()
+	with pytest.raises(RuntimeError, match="needs volumeRule 'affine'"):
+		scene.engine(DT, volumeRule='inversePower').press(ids, 1e8)

@@ -96,6 +96,13 @@ def test_refusals(plugin):
 	                  (dict(), 'at least one'), (dict(stress=(-1e14, -1e14, 0, -1e14)), 'no pressure')):
 		with pytest.raises(RuntimeError, match=word):
 			g.setCells(0, **bad)
+	g, m = grid(spallStrength=1e9)
+	with pytest.raises(RuntimeError, match='spallStrength'):
+		g.setCells(0, stress=(2e9, 2e9, 0, 2e9))
+	g, m = grid(yieldModel='johnsonCook', taylorQuinney=0.)
+	g.setCells(0, stress=(0.7e9, 0, 0))
+	with pytest.raises(RuntimeError, match='flows at'):
+		g.setCells(0, temperature=1500.)
 	g, m = grid(eos='mieGruneisen', gruneisen=1.7, hugoniotSlope=1.3)
 	with pytest.raises(RuntimeError, match='mieGruneisen'):
 		g.setCells(0, stress=(1e6, 0, 0))

@@ -224,3 +224,54 @@ def test_clumpRefuses(plugin):
 	packings.clump(left[:3])
 	with pytest.raises(packings.PackingError, match='already'):
 		packings.clump(left[2:5])
+
+
+def test_automataThatFlyBecomeARigidBody(plugin):
+	"""A ball is clumped in a pause: it leaves the engine with its mass and momentum, and goes on at its speed."""
+	from yade import O
+	from yade.wrapper import ForceResetter, NewtonIntegrator
+	O.reset()
+	m = materials.mcaMat('4340', **engine_scene.STEEL)
+	ids = packings.addBodies(packings.hexagonal(D, packings.Rectangle((0, 0), (12 * D, 5 * D))), m)
+	ball = packings.addBodies(packings.hexagonal(D, packings.disc((0, 9 * D), 2.1 * D), rim='full'), m, velocity=(0, -150), mask=2)
+	e = engine_scene.engine(5e-9, account=True)
+	O.run(20, True)
+	weight = sum(O.bodies[i].state.mass for i in ball)
+	body = O.bodies[packings.clump(ball)]
+	O.engines = [ForceResetter(), e, NewtonIntegrator(damping=0, mask=2)]
+	y = body.state.pos[1]
+	for _ in range(20): O.run(1, True)
+	assert e.count == len(ids) and e.energies()['leftMass'] == pytest.approx(weight) and e.energies()['leftMomentumY'] == pytest.approx(-150 * weight)
+	assert body.state.pos[1] - y == pytest.approx(-150 * 20 * 5e-9, rel=1e-9)
+	O.run(3000, True)
+	assert body.state.vel[1] > -140
+
+
+def test_loadingMakesNoSearchOfItsOwn(plugin, tmp_path):
+	from yade import O
+	ids = law2_scene.impact()
+	e = engine_scene.engine()
+	O.run(150, True)
+	O.save(str(tmp_path / 's.yade.gz'))
+	found = []
+	for again in False, True:
+		if again: O.load(str(tmp_path / 's.yade.gz'))
+		O.run(100, True)
+		found.append((law2_scene.state(ids), O.engines[0].counters()['searches'], O.time))
+	assert np.array_equal(found[0][0], found[1][0]) and found[0][1:] == found[1][1:]
+
+
+def test_rulesGoWithTheirScene(plugin):
+	"""One engine in a sweep: the glue of the first case is not in the second."""
+	from yade import O
+	broken = []
+	e = None
+	for glued in True, False:
+		left, right, a, b = halves()
+		if e is None: e = mover('engine')
+		O.engines, O.dt = [e], 1e-8
+		if glued: e.setPair(a, b, strength=0.02)
+		pull(left, right)
+		O.run(100, True)
+		broken.append(len(e.brokenLinks()['time']))
+	assert broken[0] > 5 and broken[1] == 0

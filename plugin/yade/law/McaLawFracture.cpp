@@ -16,7 +16,7 @@ using mca::VolumeRule;
 bool Loop::breaks(const Row& r, int k) const
 {
 	const Side& s = r.link[k];
-	if (!r.material->fracture.active() && !rules.weakest(materialOf(r)).tension) return false;
+	if (!r.material->fracture.active() && !std::isfinite(ruleOf(r, rows[size_t(s.other)]).tension)) return false;
 	const auto end = [&](const Row& a, int side, Vec toOther) {
 		const Real normal = mca::normalStress(wholeStress(*a.m, *a.l, stressOf(*s.p, side), toOther), toOther);
 		return mca::LinkEnd { a.l->criterion, normal, a.m->volumeRatio, a.m->pressure, a.m->strength };
