@@ -60,6 +60,11 @@ def strips():
 	return scenes.plateImpact('4340', '4340', 4 * D, 4 * D, 6 * D, D, 50.)
 
 
+def wholeBodies():
+	from yade_mca import packings
+	return packings.addBodies(packings.hexagonal(D, rectangle(), rim='full'), '4340')
+
+
 def anEngine():
 	from yade import O
 	from yade.wrapper import McaEngine
@@ -87,7 +92,7 @@ GOOD = {
         'scenes.addStrip.packing': lambda: packing().translated((0.5, 0.)), 'scenes.driveEnd.part': 'flyer', 'scenes.taylorBar.anvil': 'rough',
         'ids': [0, 1], 'links': [(0, 1)], 'number': 10., 'mean': 2., 'measure.fragments.velocity': [(0., -90.), (0., -80.)], 'measure.fragmentsOf.engine': anEngine,
         'measure.rodMeasure.velocity': [(0., -90.), (0., -80.)], 'measure.speedAlong.velocity': [(0., -90.), (0., -80.)],
-        'packings.resetStates.ids': bodies, 'packings.clump.ids': bodies, 'packings.cellGeometry.name': 'hexagonal', 'packings.create.name': 'hexagonal', 'scenes.tiedPlate.largest': 3.,
+        'packings.resetStates.ids': bodies, 'packings.clump.ids': wholeBodies, 'packings.cellGeometry.name': 'hexagonal', 'packings.create.name': 'hexagonal', 'scenes.tiedPlate.largest': 3.,
         'materials.Material.flowStress.plasticStrain': 0.1, 'materials.Material.johnsonCookFractureStrain.triaxiality': 0.3,
         'measure.momentumSettled.tolerance': 1e-3, 'outlines.Polygon.classify.radius': D, 'packings.fcc.shape': ball,
         'packings.fcc.rim': 'full', 'packings.fcc.mirror': '', 'packings.fcc.origin': (0., 0., 0.), 'packings.fcc.orientation': ((1., 1., 1.), (1., -1., 0.)), 'packings.SpacePacking.translated.by': (D, 0., 0.),

@@ -233,7 +233,7 @@ def test_automataThatFlyBecomeARigidBody(plugin):
 	O.reset()
 	m = materials.mcaMat('4340', **engine_scene.STEEL)
 	ids = packings.addBodies(packings.hexagonal(D, packings.Rectangle((0, 0), (12 * D, 5 * D))), m)
-	ball = packings.addBodies(packings.hexagonal(D, packings.disc((0, 9 * D), 2.1 * D), rim='full'), m, velocity=(0, -150), mask=2)
+	ball = packings.addBodies(packings.hexagonal(D, packings.disc((0, 6.5 * D), 2.1 * D), rim='full'), m, velocity=(0, -150), mask=2)
 	e = engine_scene.engine(5e-9, account=True)
 	O.run(20, True)
 	weight = sum(O.bodies[i].state.mass for i in ball)
