@@ -34,7 +34,7 @@ template <class Vector, class Turned> struct AccountOf {
 	Vector impulse {};  ///< of external forces, driven and viscous boundaries [N s/m]
 	Vector leftMomentum {}; ///< that erased automata had, less that of added ones [N s/m]
 	/// kinetic energy gained minus all work booked: round-off
-	double bookedError() const { return kinetic - kineticStart - bookedVolumetric - bookedDeviatoric - bookedViscous - external + boundary; }
+	double bookedError() const { return kinetic + leftKinetic - kineticStart - bookedVolumetric - bookedDeviatoric - bookedViscous - external + boundary; }
 	/// independent sum at the time of the stresses
 	double total() const
 	{

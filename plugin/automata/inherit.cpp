@@ -144,7 +144,6 @@ void Solver::inheritState(const Solver& old)
 	topologyChanged = true;
 	// what joined or left changes the sum, not the balance
 	const Account now = account(), before = old.account();
-	sums.kineticStart += now.kinetic - before.kinetic;
 	sums.leftKinetic += before.kinetic - now.kinetic, sums.leftVolumetric += before.volumetric - now.volumetric,
 		sums.leftDeviatoric += before.deviatoric - now.deviatoric;
 	sums.left += before.kinetic + before.volumetric + before.deviatoric - now.kinetic - now.volumetric - now.deviatoric;

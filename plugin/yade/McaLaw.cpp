@@ -92,6 +92,7 @@ McaLawLoop& McaLaw::loopOf(const Scene& scene)
 
 void McaLaw::step()
 {
+	if (PyGILState_Check()) refuseWhileRunning("__call__"); // a script's call beside the loop's thread
 	worker = std::this_thread::get_id();
 	McaPhys::takeError(); // of a step that another error has ended
 	checkOptions(*scene);

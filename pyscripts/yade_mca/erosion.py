@@ -19,7 +19,8 @@ def erode(engine, where, names=('x', 'y', 'vx', 'vy', 'links', 'plasticStrain', 
 	where: f(a) with a: dict of name -> numpy (N,), the fields `names` (those of McaEngine.field()) and 'ids', that returns truth values (N,).
 	Mass, momentum and energies of the erased stand in engine.energies(): 'leftMass' [kg/m, in space kg], 'leftMomentumX' and so on, 'leftKinetic', 'leftVolumetric',
 	'leftDeviatoric' and their sum within 'left', so that 'total' goes on; plastic work, friction and the like stay where they were booked. Links and contacts
-	with them are gone; who stays keeps volume and stress. Erosion is no fracture criterion: what still carries load leaves a hole.
+	with them are gone; who stays keeps volume and stress. Erosion is no fracture criterion: what still carries load leaves a hole, and 'total' moves in the next
+	step by the work of half a step on it, since velocities stand half a step after stresses ('bookedError' does not). When the last automaton is erased the engine starts anew.
 	Raises ErosionError when where(a) is none, RuntimeError of the engine's next step when a body cannot go (tied to a grid).
 	"""
 	from ._yade import scene

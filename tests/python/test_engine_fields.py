@@ -233,7 +233,7 @@ def test_whatIsErodedStaysInTheAccount(plugin, dimension):
 	assert lost > 3 and e.count == sum(1 for b in O.bodies) and not any(b.id in gone for b in O.bodies)
 	O.run(30, True)
 	a = e.energies()
-	assert abs(a['bookedError']) < 1e-10 * kinetic
+	assert abs(a['bookedError']) < 1e-10 * kinetic and a['kineticStart'] == pytest.approx(kinetic, rel=1e-12)
 	assert vector('momentum') + vector('leftMomentum') - vector('impulse') == pytest.approx(start, abs=1e-10 * abs(start).max())
 	assert a['leftMass'] + sum(b.state.mass for b in O.bodies) == pytest.approx(total, rel=1e-12)
 	assert a['left'] == pytest.approx(a['leftKinetic'] + a['leftVolumetric'] + a['leftDeviatoric'], rel=1e-9, abs=1e-12 * kinetic)
