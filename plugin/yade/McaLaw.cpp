@@ -193,8 +193,11 @@ long McaLaw::cut(py::object pairs)
 
 void McaLaw::setPair(py::object first, py::object second, Real strength, Real pairStrength, py::object frictionAngle, Real viscosity)
 {
+	auto materials = pairMaterials; // wrong arguments are told first
+	auto numbers   = pairNumbers;
+	addPairRule(materials, numbers, "McaLaw.setPair", first, second, strength, pairStrength, frictionAngle, viscosity);
 	refuseWhileRunning("setPair");
-	addPairRule(pairMaterials, pairNumbers, "McaLaw.setPair", first, second, strength, pairStrength, frictionAngle, viscosity);
+	pairMaterials.swap(materials), pairNumbers.swap(numbers);
 }
 
 void McaLaw::postLoad(McaLaw&) { checkPairRules(pairMaterials, pairNumbers, "McaLaw"); }

@@ -33,6 +33,11 @@ void addPairRule(
 	if (!(strength > 0 && strength < 1e9)) refuse("strength [-]", numberText(strength), "above 0 and below 1e9");
 	if (!(pairStrength > 0)) refuse("pairStrength [Pa]", numberText(pairStrength), "above 0; infinite: none of its own");
 	if (!(viscosity >= 0 && viscosity <= 1)) refuse("viscosity [-]", numberText(viscosity), "from 0 to 1");
+	const auto breaks = [](const shared_ptr<Material>& m) { return static_cast<const McaMat&>(*m).toMaterial().fracture.active(); };
+	if (strength != 1 && !breaks(a) && !breaks(b))
+		throw std::runtime_error(
+			call + ": strength [-] = " + numberText(strength)
+			+ " scales fracture criteria, and neither material has one; it must be 1, or give a material a criterion, or the pair a pairStrength.");
 	Real friction = -1;
 	if (!frictionAngle.is_none()) {
 		const py::extract<Real> angle(frictionAngle);

@@ -92,6 +92,10 @@ def test_relaxRefuses(plugin):
 	for bad in dict(tolerance=0), dict(damping=0), dict(damping=1), dict(steps=0), dict(steps=1.5):
 		with pytest.raises(equilibrium.RelaxError, match=next(iter(bad))):
 			equilibrium.relax(e, **bad)
+	O.engines = []
+	with pytest.raises(equilibrium.RelaxError, match='must stand in O.engines'):
+		equilibrium.relax(e)
+	O.engines = [e]
 	e.prescribe(ids[:5], x=1.)
 	with pytest.raises(equilibrium.RelaxError, match='not at rest after 60 steps'):
 		equilibrium.relax(e, steps=60)

@@ -143,6 +143,11 @@ def test_refusals(plugin, road):
 		with pytest.raises(RuntimeError, match=word):
 			e.setPair(*args, **options)
 	O.run(5, True)
+	left, right, a, b = halves(constants=engine_scene.STEEL)  # no criterion
+	e = mover(road)
+	with pytest.raises(RuntimeError, match='neither material has one'):
+		e.setPair(a, b, strength=0.5)
+	e.setPair(a, b, pairStrength=1e9)
 
 
 @pytest.mark.parametrize('dimension', (2, 3))
