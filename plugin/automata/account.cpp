@@ -38,6 +38,7 @@ Account Solver::account() const
 		const int32_t i = contacts.owner[c];
 		A.deviatoric += Lattice::cell(S.diameter[i]) / nLinks * pairEnergy(sideOf(contacts, c), S.J[i], contacts.twoG[c]);
 	}
+	A.deviatoric += energyOfBonds();
 	return A;
 }
 

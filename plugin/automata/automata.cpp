@@ -136,6 +136,16 @@ namespace {
 				l.middle.push_back(tripleOf(b.middle.at(q))), l.normal.push_back(tripleOf(b.normal.at(q)));
 			return l;
 		}
+		CohesivePairs cohesivePairs() const override
+		{
+			const Bonds&  b = solver.bonds;
+			CohesivePairs p;
+			p.first.assign(b.first.begin(), b.first.end()), p.second.assign(b.second.begin(), b.second.end());
+			for (size_t q = 0; q < b.size(); q++)
+				p.opening.push_back(wide(sideOf(b, q), S.between(size_t(solver.indexOf(p.first[q])), size_t(solver.indexOf(p.second[q]))))),
+					p.spent.push_back(shareSpent(b.at(q)));
+			return p;
+		}
 		size_t cut(const std::vector<std::pair<int32_t, int32_t>>& pairs) override { return solver.cut(pairs); }
 		std::vector<double> quantity(const std::vector<int>& ids, const std::string& name, const std::string& call) const override;
 		Work work() const override

@@ -67,6 +67,11 @@ struct BrokenLinks {
 	std::vector<int>    first, second, cause; ///< the caller's numbers; BreakCause
 	std::vector<Triple> middle, normal;       ///< of the link [m]; unit vector from the first to the second
 };
+/// Broken pairs that have not parted, in the order in which they broke.
+struct CohesivePairs {
+	std::vector<int>    first, second;  ///< the caller's numbers
+	std::vector<double> opening, spent; ///< now [m]; share of the fracture energy [-]
+};
 /// A rigid body beside the automata.
 struct WallStart {
 	int      id = 0;
@@ -128,6 +133,7 @@ public:
 	virtual AccountOf<Triple, Triple>    account() const = 0;
 	virtual std::vector<std::pair<int32_t, int32_t>> links() const = 0;
 	virtual BrokenLinks                              brokenLinks() const = 0;
+	virtual CohesivePairs                            cohesivePairs() const = 0;
 	virtual size_t                                   cut(const std::vector<std::pair<int32_t, int32_t>>&) = 0;
 	/// One quantity of these automata. Throws Error that lists the names when there is none of this name, with `call` in it.
 	virtual std::vector<double> quantity(const std::vector<int>& ids, const std::string& name, const std::string& call) const = 0;

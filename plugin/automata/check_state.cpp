@@ -183,6 +183,20 @@ namespace {
 	}
 } // namespace
 
+/// Broken pairs that hold together.
+void Solver::checkBonds() const
+{
+	const Bonds& B = bonds;
+	const size_t n = B.first.size();
+	need(B.second.size() == n && size({ &B.rest, &B.stiffness, &B.from, &B.until, &B.most }, n) && sidesAre(B, n), "the length of the cohesive pairs");
+	need(finite(B.rest) && positive(B.stiffness) && positive(B.from) && positive(B.until) && positive(B.most)
+	             && finiteSides(n, [&](size_t q) { return sideOf(B, q); }),
+	     "a cohesive pair");
+	for (size_t q = 0; q < n; q++)
+		need(indexOf(B.first[q]) >= 0 && indexOf(B.second[q]) >= 0 && B.first[q] != B.second[q] && B.until[q] > B.from[q] && B.most[q] >= B.from[q],
+		     "a cohesive pair");
+}
+
 /// Links that have broken, and those that shall.
 void Solver::checkBroken() const
 {
@@ -214,7 +228,7 @@ void Solver::checkState() const
 		     "the result of a block");
 	checkArrays(S, stopped);
 	checkLinks(S);
-	checkBroken();
+	checkBroken(), checkBonds();
 	checkContacts(contacts, S, stopped, searchDue && options.contacts);
 	const bool used = contacts.size() > 0 && !(searchDue && options.contacts);
 	const auto sum  = [&](const Doubles& v, bool optional) {

@@ -77,6 +77,17 @@
 	F(second, double, scratch, "(r/rest)^2, then normal stress before, coupling's work") \
 	F(third, double, scratch, "shear stress before, plastic work")
 
+/// F(name, type, presence, text), V(name, presence, text, names) per broken pair that still holds together (Bond), saved.
+#define MCA_BOND_FIELDS(F, V) \
+	F(first, int32_t, saved, "number of one automaton") \
+	F(second, int32_t, saved, "of the other") \
+	MCA_BOND_SIDES(F, V) \
+	F(rest, double, saved, "distance at which it is closed [m]") \
+	F(stiffness, double, saved, "before it softens [N/m2]") \
+	F(from, double, saved, "opening from which on it softens [m]") \
+	F(until, double, saved, "opening at which it parts [m]") \
+	F(most, double, saved, "widest opening so far [m]")
+
 /// F(name, presence, text), V(name, presence, text, names) per automaton: sums over its contacts, saved; presence: `always` in scenes with contacts,
 /// `whenUsed`: for the account only.
 #define MCA_CONTACT_SUMS(F, V) \
@@ -101,6 +112,7 @@ constexpr const char* automatonFieldNames[] = { MCA_AUTOMATON_FIELDS(MCA_NUMBER,
 #undef MCA_VECTOR
 #define MCA_VECTOR(name, presence, text, ...) __VA_ARGS__,
 constexpr const char* contactFieldNames[] = { MCA_CONTACT_FIELDS(MCA_NUMBER, MCA_VECTOR) };
+constexpr const char* bondFieldNames[]    = { MCA_BOND_FIELDS(MCA_NUMBER, MCA_VECTOR) };
 constexpr const char* contactSumNames[]   = { MCA_CONTACT_SUMS(MCA_NUMBER, MCA_VECTOR) };
 #undef MCA_VECTOR
 #undef MCA_NUMBER

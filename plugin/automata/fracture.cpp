@@ -89,7 +89,9 @@ std::vector<int32_t> Solver::breakLinks()
 		const size_t j = S.neighbour[linkSlot(i, k)];
 		if (!holds(S.flags[i], k)) continue; // seen from the other side before
 		noteBreak(i, k, causes[q]);
-		unlink(i, k), unlink(j, Lattice::opposite(k));
+		const bool holdsOn = bondAt(i, k, causes[q]);
+		unlink(i, k, !holdsOn), unlink(j, Lattice::opposite(k), !holdsOn);
+		if (holdsOn) leavePush(i, k), leavePush(j, Lattice::opposite(k));
 		counters.brokenLinks++;
 	}
 	for (size_t q = 0; q < touched.size(); q++)
@@ -143,13 +145,13 @@ void Solver::noteBreak(size_t i, int k, BreakCause cause)
 	broken.middle.set(n, S.position.at(i) + r * 0.5), broken.normal.set(n, along);
 }
 
-/// One end of a link that breaks. It stays known as one that has held; its stresses go on in the contact.
-void Solver::unlink(size_t i, int k)
+/// One end of a link that breaks. It stays known as one that has held; its stresses go on in the contact. books: what is lost is not booked elsewhere.
+void Solver::unlink(size_t i, int k, bool books)
 {
 	Store&       S      = store;
 	const size_t at     = linkSlot(i, k), j = size_t(S.neighbour[at]);
 	const double weight = linkWeight(S.flags[i], k), twoG = S.pairTwoG(S.speciesOf(i), j, arm(S.diameter[i], S.diameter[j]));
-	if (options.account) sums.fracture += lostAtBreak(S.diameter[i], weight, pairEnergy(S.stressAt(at), S.J[i], twoG));
+	if (options.account && books) sums.fracture += lostAtBreak(S.diameter[i], weight, pairEnergy(S.stressAt(at), S.J[i], twoG));
 	S.setStress(at, scaled(S.stressAt(at), weight));
 	S.flags[i] = withoutTriangles(S.flags[i] & ~(Flags(1) << k | Flags(1) << (halfShift + k))) | exposedBit;
 	S.blocks[i / blockSize].intact = false;

@@ -109,6 +109,10 @@ void Solver::inheritState(const Solver& old)
 	broken = old.broken;
 	for (size_t q = 0; q < old.asked.size(); q += 2)
 		if (indexOf(old.asked[q]) >= 0 && indexOf(old.asked[q + 1]) >= 0) asked.push_back(old.asked[q]), asked.push_back(old.asked[q + 1]);
+	bonds = old.bonds;
+	const auto stays = [&](int32_t id) { return indexIn(old, id) >= 0 && indexOf(id) >= 0; };
+	bonds.keep([&](size_t q) { return stays(bonds.first[q]) && stays(bonds.second[q]); });
+	knownBonds = bonds.size();
 	sums = old.sums, counters = old.counters, time = old.time, lastDt = old.lastDt, lastMove = old.lastMove, lastSort = old.lastSort, dtLimit = old.dtLimit,
 	filterTime = old.filterTime;
 	for (size_t i = 0; i < S.size(); i++) {

@@ -3,6 +3,7 @@
 //   solver.build(...); loop { solver.computeForces(); solver.integrate(dt); }
 // Leapfrog: positions at whole steps, velocities at half steps. computeForces() gives the forces at the present positions.
 #pragma once
+#include "bonds.hpp"
 #include "common.hpp"
 #include "contacts.hpp"
 #include <functional>
@@ -75,8 +76,10 @@ public:
 	/// Of pairs of materials; others than before count from the next computeForces() on. loaded: the contacts of a saved state have them already.
 	void   setPairRules(const PairRules& rules, bool loaded = false)
 	{
-		searchDue |= !loaded && !(rules == store.pairRules);
+		if (rules == store.pairRules) return;
+		searchDue |= !loaded;
 		store.pairRules = rules;
+		checkCohesion();
 	}
 	/// Viscous (transmitting) boundary: force -b v, b = rho c A [kg/(m s)] per direction.
 	void setDamping(size_t i, Vec<double> b);
@@ -98,6 +101,7 @@ public:
 	Counters counters;
 	Store    store;
 	Contacts contacts;
+	Bonds    bonds; ///< broken pairs that still hold together
 	double   time = 0;
 	/// Links that hold, both ends once: (id, id).
 	std::vector<std::pair<int32_t, int32_t>> links() const;
@@ -193,6 +197,14 @@ private:
 	int    linkOf(size_t i, size_t j) const;
 	void   noteBreak(size_t i, int k, BreakCause cause);
 	BreakCause           causeAt(size_t i, int k) const;
+	Breaking             breakingOf(size_t i, int k) const;
+	bool                 bondAt(size_t i, int k, BreakCause cause);
+	bool                 spansVolume(size_t i) const;
+	double               lostToBond(size_t i, int k, Vec<double> r) const;
+	void                 leavePush(size_t i, int k);
+	void                 pullTogether();
+	double               energyOfBonds() const;
+	void                 checkCohesion() const;
 	LinkEnd              linkEnd(size_t i, int k) const;
 	std::vector<int32_t> breakLinks();
 	void   settleVolumes();
@@ -219,7 +231,7 @@ private:
 	struct Kicked;
 	void        bookBlock(size_t b, double kick, double after, const Kicked& to);
 	void        bookStep(double kick, double after);
-	void   unlink(size_t i, int k);
+	void   unlink(size_t i, int k, bool books);
 	double ownMass() const; ///< of all that are not tied
 	double coldEnergyAt(size_t i, double J) const;
 	double contactEnergyAt(size_t i, double Jc) const;
@@ -228,6 +240,7 @@ private:
 	template <class F> void archive(F&& f);
 	static uint64_t         layout(); ///< of the saved state: follows from the names and kinds of what archive() lists
 	void                    checkBroken() const;
+	void                    checkBonds() const;
 	void                    checkState() const; ///< after loading: throws Error unless all fits together
 	[[noreturn]] void       overlapError(size_t i, size_t j, double ratio) const;
 
@@ -250,6 +263,7 @@ private:
 	double                   filterTime = 0;    ///< since its last call [s]
 	bool                     flows = false;     ///< some material yields
 	int64_t                  lastSort = 0;
+	size_t                   knownBonds = 0; ///< of bonds, those that broke before the present step
 	std::vector<int32_t>     asked; ///< numbers of pairs whose links break at the start of the next step
 	std::vector<std::pair<int32_t, double>> unsettled; ///< lost its links in the present search, with the volume that contacts must take over
 	Vectors              searched; ///< where all automata were at the last search of all: the list of contacts is that of these places, see searchEnds()

@@ -141,8 +141,11 @@ template <class F> void Solver::archive(F&& to)
 		to.names(name), to.names(" ");
 	for (auto name : contactFieldNames)
 		to.names(name), to.names(" ");
+	for (auto name : bondFieldNames)
+		to.names(name), to.names(" ");
 	store.eachArray(f);
 	contacts.eachArray(f);
+	bonds.eachArray(f);
 	f.MCA_EACH(store.neighbour, MCA_LINK_STRESSES, store.blocks, store.species, store.materials, contacts.rowOwner, contacts.rowBegin);
 	for (auto& name : contactSumNames)
 		to.names(&name == contactSumNames ? "scratch." : ", scratch."), to.names(name);
@@ -186,6 +189,7 @@ void Solver::load(const std::string& bytes)
 	fresh.archive(r);
 	if (r.at != bytes.size()) damaged("bytes are left over");
 	fresh.checkState();
+	fresh.knownBonds = fresh.bonds.size();
 	fresh.timing = timing, fresh.wholeLists = wholeLists;
 	fresh.works.assign(fresh.store.blocks.size(), {});
 	fresh.contacts.sizeScratch();

@@ -126,6 +126,7 @@ void Solver::forces(const Extra& X)
 	}
 	Timer t(timing, counters.nsForce);
 	eachAwake([&](size_t b) { forcePass(store, b, options.volumeRule, X); });
+	if (bonds.size()) pullTogether();
 }
 
 /// Where materials have an internal energy, the heat of the viscosity of the last step goes into it.

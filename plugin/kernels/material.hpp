@@ -25,6 +25,7 @@ struct Fracture {
 	double pairStress    = std::numeric_limits<double>::infinity(); ///< tensile normal stress of the pair [Pa]
 	double mises         = std::numeric_limits<double>::infinity(); ///< sigma_eq [Pa], or sigma_c of the two-parameter criterion
 	double ratio         = 1;                                       ///< a = sigma_c/sigma_t of the two-parameter criterion; 1 = Mises [-]
+	double energy        = 0;                                       ///< G_f, spent while a broken pair opens [J/m2]; 0: none, it parts at once
 	DuctileDamage damage;
 	bool          active() const
 	{
@@ -67,7 +68,7 @@ template <class M, class F> void eachConstant(M& m, F&& f)
 	eachEosConstant(m.eos, f);
 	f(m.yield.kind), f(m.yield.referenceTemperature), f(m.yield.heatPerWork);
 	eachFlowConstant(m.yield, f);
-	f(m.fracture.strain), f(m.fracture.spall), f(m.fracture.pairStress), f(m.fracture.mises), f(m.fracture.ratio);
+	f(m.fracture.strain), f(m.fracture.spall), f(m.fracture.pairStress), f(m.fracture.mises), f(m.fracture.ratio), f(m.fracture.energy);
 	f(m.fracture.damage.kind), f(m.fracture.damage.D1), f(m.fracture.damage.D2), f(m.fracture.damage.D3), f(m.fracture.damage.D4), f(m.fracture.damage.D5);
 	f(m.viscosity.linear), f(m.viscosity.quadratic), f(m.friction);
 }
@@ -133,6 +134,7 @@ inline void validate(const Material& m, const std::string& name)
 	in(laws::aboveZero.with("infinite: never"), "pairStrength [Pa]", m.fracture.pairStress);
 	in(laws::aboveZero.with("infinite: never"), "fractureStress [Pa]", m.fracture.mises);
 	need(m.fracture.ratio >= 1 && m.fracture.ratio < laws::huge, "strengthRatio [-]", m.fracture.ratio, "finite and at least 1");
+	in(laws::notNegative, "fractureEnergy [J/m2]", m.fracture.energy);
 	validate(m.fracture.damage, y, in, need);
 	in(laws::notNegative, "viscosityLinear [-]", m.viscosity.linear);
 	in(laws::notNegative, "viscosityQuadratic [-]", m.viscosity.quadratic);

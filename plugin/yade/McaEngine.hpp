@@ -50,6 +50,7 @@ public:
 	py::dict   phases();
 	py::list   linkList();
 	py::dict   brokenLinks();
+	py::dict   cohesivePairs();
 	long       cut(py::object pairs);
 	void       setViscous(const vector<int>& ids, const py::object& normal);
 	void       prescribe(const vector<int>& ids, py::object x, py::object y, py::object z);
@@ -206,6 +207,9 @@ public:
 		.def("brokenLinks", &McaEngine::brokenLinks, "All links that have broken so far, in turn, dict of numpy arrays (N,): 'time' [s] since the "
 		    "engine's first step, 'id1' < 'id2', 'x', 'y', 'z' [m] the middle of the link, 'nx', 'ny', 'nz' [-] its direction, across the crack, and "
 		    "'cause' (int): an index of yade_mca.cracks.CAUSES.")
+		.def("cohesivePairs", &McaEngine::cohesivePairs, "Pairs whose links have broken and that hold together until their fractureEnergy is spent "
+		    "(11f), in the order in which they broke, dict of numpy arrays (N,): 'id1', 'id2', 'opening' [m] now, 'spent' [-] share of the "
+		    "fracture energy, below 1. Those of brokenLinks() that are missing here have parted.")
 		.def("setViscous", &McaEngine::setViscous, (py::arg("ids"), py::arg("normal")), "Viscous (transmitting) boundary of Lysmer and Kuhlemeyer "
 		    "(1969) on these bodies: traction -rho cP v_n n - rho cS v_t on their outer width, in space on their share of the rectangle they "
 		    "cover; normal is (1,0), (-1,0), (0,1) or (0,-1), in space one of the six of three components. Read now; "

@@ -308,6 +308,16 @@ py::dict McaEngine::brokenLinks()
 	return d;
 }
 
+py::dict McaEngine::cohesivePairs()
+{
+	const mca::CohesivePairs p = read("cohesivePairs", [&] { return solver->cohesivePairs(); });
+	const Py_ssize_t         n = Py_ssize_t(p.first.size());
+	py::dict                 d;
+	d["id1"] = sdk::arrayCopy(p.first.data(), { n }), d["id2"] = sdk::arrayCopy(p.second.data(), { n });
+	d["opening"] = sdk::arrayCopy(p.opening.data(), { n }), d["spent"] = sdk::arrayCopy(p.spent.data(), { n });
+	return d;
+}
+
 long McaEngine::automataCount() const
 {
 	return locked([&] { return solver ? long(order.size()) : 0L; });

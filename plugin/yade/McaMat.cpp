@@ -48,7 +48,7 @@ mca::Material McaMat::toMaterial() const
 		to.heatPerWork          = heatCapacity > 0 ? taylorQuinney / (density * heatCapacity) : 0.;
 	}
 	m.fracture.strain = fractureStrain, m.fracture.spall = spallStrength, m.fracture.pairStress = pairStrength, m.fracture.mises = fractureStress,
-	m.fracture.ratio = strengthRatio;
+	m.fracture.ratio = strengthRatio, m.fracture.energy = fractureEnergy;
 	m.fracture.damage = { mca::DamageKind(pick("damageModel", damageModel, { "none", "johnsonCook" })), damageD1, damageD2, damageD3, damageD4, damageD5 };
 	m.viscosity = { viscosityLinear, viscosityQuadratic };
 	m.friction  = std::tan(frictionAngle);

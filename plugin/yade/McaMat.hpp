@@ -141,6 +141,9 @@ public:
 		    "two-parameter criterion 0.5 (a+1) sigma_eq + 1.5 (a-1) sigma_mean [Pa]; read at every look, by a grid when the block is added"))
 		((Real, strengthRatio, 1, , "a = compressive / tensile strength of the two-parameter criterion [-]; 1: Mises; read at every look, by a grid "
 		    "when the block is added"))
+		((Real, fractureEnergy, 0, , "G_f, the work per area of crack that a broken pair takes until it has parted [J/m2], (11f): K_Ic^2 (1 - nu^2)/E. "
+		    "From the break on its pull falls with its opening. Strength and spacing must fit together, see Material.longestSpacing(); others are "
+		    "refused. 0: a broken pair parts at once. Read at every look, of pairs as they break; a grid does not use it"))
 		((string, damageModel, "none", , "damage by plastic flow: 'none' or 'johnsonCook' (Johnson and Cook 1985): a pair unlinks where the plastic "
 		    "strain over the fracture strain at the triaxiality, rate and temperature it came at sums up to 1, (11e); read at every look; a grid "
 		    "does not use it"))

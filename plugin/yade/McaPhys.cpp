@@ -173,6 +173,16 @@ namespace {
 	}
 } // namespace
 
+namespace {
+	/// Cohesion beside what the pair does as a contact; n: from the first to the second body.
+	void addPull(McaPhys& p, const Vector3r& n)
+	{
+		p.force += p.pull, p.torque += p.pullTorque, p.torqueOther += p.pullTorqueOther;
+		p.normalForce = -p.force.dot(n) * n;
+		p.shearForce  = -p.force - p.normalForce;
+	}
+} // namespace
+
 bool Law2_ScGeom_McaPhys_Mca::go(shared_ptr<IGeom>& geom, shared_ptr<IPhys>& phys, Interaction* I)
 {
 	auto& p = static_cast<McaPhys&>(*phys);
@@ -193,8 +203,9 @@ bool Law2_ScGeom_McaPhys_Mca::go(shared_ptr<IGeom>& geom, shared_ptr<IPhys>& phy
 	const Real r2 = between(A, B, la->dimension).squaredNorm();
 	p.force = p.normalForce = p.shearForce = p.torque = p.torqueOther = p.viscousForce = Vector3r::Zero();
 	p.heatRate = 0;
-	if (!p.linked && !(p.active && p.touching(r2))) return r2 < sqr(range * p.d); // returning false erases the pair
-	McaPairLaw::in(la->dimension).force(p, *A.state, *la, *B.state, *lb);
-	return true;
+	const bool acts = p.linked || (p.active && p.touching(r2));
+	if (acts) McaPairLaw::in(la->dimension).force(p, *A.state, *la, *B.state, *lb);
+	if (p.pull != Vector3r::Zero()) addPull(p, between(A, B, la->dimension).normalized());
+	return acts || p.bonded() || r2 < sqr(range * p.d); // returning false erases the pair
 }
 } // namespace yade

@@ -29,6 +29,8 @@ public:
 	/// This side pushes: it is closer than its rest distance, which is not that of automata that slid into each other.
 	bool pushes(int side, Real r2) const;
 	bool touching(Real r2) const { return pushes(0, r2) || pushes(1, r2); }
+	/// A broken pair that still holds together.
+	bool       bonded() const { return bondLast > 0; }
 	/// Where two that are found closer than their diameters start without push [m].
 	void startContact(Real r);
 	/// Penalty contact of an automaton of diameter d [m] with a rigid body.
@@ -68,6 +70,16 @@ public:
 		((Vector3r, force, Vector3r::Zero(), Attr::readonly, "force of this step on the first body, the second has its negative [N/m, in space N]"))
 		((Vector3r, torque, Vector3r::Zero(), Attr::readonly, "torque on the first body [N, in space N m]; in plane strain about z alone"))
 		((Vector3r, torqueOther, Vector3r::Zero(), Attr::readonly, "torque on the second body [N, in space N m]"))
+		((Vector3r, opening, Vector3r::Zero(), Attr::readonly, "of a broken pair that holds together (11f): in plane strain along the pair, across it, "
+		    "0; in space from the first to the second body [m]"))
+		((Real, bondRest, 0, Attr::readonly, "distance at which it is closed [m]"))
+		((Real, bondStiffness, 0, Attr::readonly, "pull over the opening before it softens [N/m2, in space N/m]"))
+		((Real, bondFirst, 0, Attr::readonly, "opening from which on it softens [m]"))
+		((Real, bondLast, 0, Attr::readonly, "opening at which it parts [m]; 0: it holds nothing"))
+		((Real, bondMost, 0, Attr::readonly, "widest opening so far [m]"))
+		((Vector3r, pull, Vector3r::Zero(), Attr::readonly, "share of force that is cohesion [N/m, in space N]"))
+		((Vector3r, pullTorque, Vector3r::Zero(), Attr::readonly, "the same of torque [N, in space N m]"))
+		((Vector3r, pullTorqueOther, Vector3r::Zero(), Attr::readonly, "the same of torqueOther [N, in space N m]"))
 		((Real, heatRate, 0, Attr::readonly, "power of the pair viscosity [W/m, in space W]"))
 		((Vector3r, viscousForce, Vector3r::Zero(), Attr::readonly, "share of the viscosity in force [N/m, in space N]"))
 		,

@@ -22,12 +22,13 @@ from pathlib import Path
 
 import numpy as np
 
-from ._arguments import LARGEST, numbersOfAnyShape
+from ._arguments import LARGEST, numbersOfAnyShape, refuse as refuseArgument
 
 __all__ = ['Material', 'MaterialError', 'names', 'get', 'mcaMat', 'MCAMAT_ATTRIBUTES', 'YIELD_MODELS', 'EOS_MODELS', 'DAMAGE_MODELS']
 
 DATA = Path(__file__).with_name('data') / 'materials.csv'
 STRENGTH = Path(__file__).with_name('data') / 'law_constants.csv'
+TOUGHNESS = Path(__file__).with_name('data') / 'fracture_toughness.csv'
 #: laws and their constants as the library knows them, by kind ('eos', 'yieldModel'); written by the build (plugin/laws.cpp)
 LAWS = json.loads(Path(__file__).with_name('data').joinpath('laws.json').read_text())
 EOS_MODELS = tuple(law['name'] for law in LAWS['eos'])
@@ -36,6 +37,8 @@ DAMAGE_MODELS = ('none', 'johnsonCook')
 DISTRIBUTIONS = ('uniform', 'normal', 'weibull')
 #: plastic strain up to which the straight line of ``linearHardening`` is fitted to the full curve [-]
 FIT_STRAIN = 0.5
+#: area of the pairs that a crack along the closest rows or planes cuts, over its own, by dimension [-]
+FACETS = {2: 2 / math.sqrt(3), 3: math.sqrt(1.5)}
 
 
 class MaterialError(ValueError):
@@ -68,6 +71,7 @@ class Material(_LawConstants):
 	spallStrength: float = math.inf  #: tensile pressure at which a pair unlinks [Pa]
 	pairStrength: float = math.inf  #: tensile normal stress of a pair at which it unlinks [Pa]
 	fractureStress: float = math.inf  #: Mises stress at which a pair unlinks; see strengthRatio [Pa]
+	fractureEnergy: float = 0.0  #: G_f, work per area of crack until a broken pair has parted [J/m2]; 0: it parts at once; see toughnessEnergy
 	strengthRatio: float = 1.0  #: a = sigma_c/sigma_t of the two-parameter criterion 0.5 (a+1) sigma_eq + 1.5 (a-1) sigma_m; 1: Mises [-]
 	damageModel: str = 'none'  #: one of DAMAGE_MODELS; the library fills D1 ... D5 where it has them, whatever the model
 	damageD1: float = 0.0  #: fracture strain of Johnson and Cook (1985): (D1 + D2 exp(D3 sigma_m/sigma_eq)) (1 + D4 ln rate) (1 + D5 T*) [-]
@@ -88,6 +92,8 @@ class Material(_LawConstants):
 	minimumPressure: float = 0.0  #: shock pressure from which on the adiabat holds [Pa]
 	eosSource: str = ''
 	strengthSource: str = ''
+	fractureToughness: float = math.nan  #: K_Ic, for information and for toughnessEnergy [Pa m^0.5]; nan: not in the library
+	toughnessSource: str = ''  #: publication of fractureToughness; the metal that was measured
 
 	@property
 	def bulkModulus(self):
@@ -128,6 +134,19 @@ class Material(_LawConstants):
 		return self.density * self.cP
 
 	@property
+	def toughnessEnergy(self):
+		"""Energy per area of crack from the toughness, K_Ic^2 (1 - nu^2)/E in plane strain (G. R. Irwin, J. Appl. Mech. 24, 1957, 361-364) [J/m2].
+
+		What a script may give as fractureEnergy. Raises MaterialError where fractureToughness is not known or the metal has no shear modulus.
+		"""
+		if not self.fractureToughness > 0:
+			raise MaterialError("material '%s' has no fracture toughness in the library; give fractureToughness [Pa m^0.5] or fractureEnergy" %
+			                    self.name)
+		if not self.shearModulus > 0:
+			raise MaterialError("material '%s' has no shear modulus, so no energy follows from its toughness; give shearModulus [Pa]" % self.name)
+		return self.fractureToughness**2 * (1 - self.poisson**2) / self.young
+
+	@property
 	def validTemperature(self):
 		"""(lowest, highest) temperature of the yield law [K]: Johnson-Cook is defined between room and melt temperature."""
 		return (self.referenceTemperature, self.meltTemperature)
@@ -141,6 +160,22 @@ class Material(_LawConstants):
 	def validStrain(self):
 		"""(lowest, 0) volume strain J - 1 at which the shock adiabat is finite [-]: lowest = -1/b."""
 		return (-1 / self.hugoniotSlope if self.hugoniotSlope > 0 else -1.0, 0.0)
+
+	def longestSpacing(self, dimension=2):
+		"""Largest diameter of automata at which the strengths fit fractureEnergy: 2 M G_f/(facets strength^2), M = rho0 cP^2 [m].
+
+		With larger ones a pair holds more elastic energy as it breaks than the crack may cost, and the engine refuses them. The strength is the largest
+		finite one of spallStrength, pairStrength and fractureStress/strengthRatio; `facets` is 2/sqrt(3) in the plane and sqrt(3/2) in space (FACETS).
+		Infinite where no strength is finite or fractureEnergy is 0. Raises MaterialError for a dimension other than 2 and 3 and for a metal without
+		shear modulus.
+		"""
+		if not isinstance(dimension, (int, np.integer)) or dimension not in FACETS: refuseArgument('dimension', '2 or 3', dimension, MaterialError)
+		strengths = [s for s in (self.spallStrength, self.pairStrength, self.fractureStress / self.strengthRatio) if math.isfinite(s)]
+		if not (strengths and self.fractureEnergy > 0): return math.inf
+		if math.isnan(self.shearModulus):
+			raise MaterialError("material '%s' has an equation of state only; give shearModulus [Pa] (0 for a fluid)" % self.name)
+		modulus = self.bulkModulus + 4 * self.shearModulus / 3
+		return 2 * modulus * self.fractureEnergy / (FACETS[dimension] * max(strengths)) / max(strengths)
 
 	def flowStress(self, plasticStrain, rate=None, temperature=None):
 		"""Yield stress [Pa] of the record's yieldModel; plasticStrain [-], rate [1/s] and temperature [K] may be arrays.
@@ -192,7 +227,8 @@ def _record(row):
 	        meltTemperature=_number(row, 'Tm_K', default=math.inf), heatCapacity=_number(row, 'cp', default=0.0),
 	        staticBulkModulus=_number(row, 'K_GPa', 1e9, math.nan), johnsonCook=None if None in jc else jc,
 	        **({} if None in damage.values() else damage), steinbergGuinan=None if None in sg else sg,
-	        minimumPressure=_number(row, 'Pmin_GPa', 1e9, 0.0), eosSource=row['eos_src'], strengthSource=row['str_src'])
+	        minimumPressure=_number(row, 'Pmin_GPa', 1e9, 0.0), eosSource=row['eos_src'], strengthSource=row['str_src'],
+	        **_toughness().get(row['name'], {}))
 	m.lawConstants.update(_lawConstants().get(m.name, {}))
 	best = 'johnsonCook' if m.johnsonCook else 'linearHardening' if m.steinbergGuinan else 'elastic'
 	return _withYield(m, best)
@@ -206,6 +242,14 @@ def _lawConstants():
 		for row in csv.DictReader(line for line in f if not line.startswith('#')):
 			out.setdefault(row['name'], {})[row['law']] = {k: float(v) for k, v in (pair.split('=') for pair in row['constants'].split())}
 	return out
+
+
+@lru_cache(maxsize=None)
+def _toughness():
+	"""{material: fractureToughness and toughnessSource} of fracture_toughness.csv."""
+	with open(TOUGHNESS, newline='') as f:
+		rows = csv.DictReader(line for line in f if not line.startswith('#'))
+		return {r['name']: dict(fractureToughness=float(r['K_Ic']), toughnessSource='%s; %s' % (r['source'], r['condition'])) for r in rows}
 
 
 def _uses(kind, law):
@@ -288,7 +332,8 @@ def get(name, yieldModel=None, **overrides):
 
 
 _POSITIVE = ('density', 'bulkSoundSpeed', 'fractureStrain', 'spallStrength', 'pairStrength', 'fractureStress')
-_NOT_NEGATIVE = ('heatCapacity', 'taylorQuinney', 'strengthSpread', 'frictionAngle', 'referenceTemperature', 'viscosityLinear', 'viscosityQuadratic', 'shearModulus')
+_NOT_NEGATIVE = ('heatCapacity', 'taylorQuinney', 'strengthSpread', 'frictionAngle', 'fractureEnergy', 'referenceTemperature',
+                 'viscosityLinear', 'viscosityQuadratic', 'shearModulus')
 
 
 #: may be infinite: no plasticity, no fracture, no melting
@@ -311,6 +356,7 @@ def _check(m):
 		if not getattr(m, k) > 0: refuse(k, 'above 0')
 	for k in _NOT_NEGATIVE:  # an equation of state alone is a record too: no shear modulus
 		if not getattr(m, k) >= 0 and not (k == 'shearModulus' and math.isnan(m.shearModulus)): refuse(k, '0 or above')
+	if m.fractureToughness <= 0: refuse('fractureToughness', 'above 0 (nan: not known)')
 	if m.frictionAngle >= 0.5 * math.pi: refuse('frictionAngle', 'from 0 to below pi/2')
 	if m.taylorQuinney > 1: refuse('taylorQuinney', 'from 0 to 1')
 	if m.strengthSpread >= 0.5: refuse('strengthSpread', 'from 0 to below 0.5')

@@ -210,15 +210,17 @@ class Fragments:
 	elongation: np.ndarray  #: largest over smallest radius of gyration, each automaton a ball of its own (F,) [-]; 1: round
 
 
-def fragments(ids, links, mass, positions, velocity, volume):
+def fragments(ids, links, mass, positions, velocity, volume, chains=True):
 	"""Fragments: automata that are connected by links.
 
 	ids (N,) int; links: pairs of ids, (M, 2) or a list, those that hold; mass (N,) [kg]; positions, velocity (N, dim) [m], [m/s], dim 2 or 3; volume (N,) at rest [m3, in
-	the plane m2], above 0. Raises ValueError for arrays that do not belong together and for a link of an unknown id.
+	the plane m2], above 0. chains=False: automata with fewer than three links connect nothing and are fragments of their own, so that two pieces between which a
+	chain of single automata still hangs are two. Raises ValueError for arrays that do not belong together and for a link of an unknown id.
 	"""
 	x, v, m, V, ids, pairs = _checked(ids, links, mass, positions, velocity, volume)
 	n, dim = x.shape
-	label = _connected(ids, pairs)
+	if not isinstance(chains, bool): raise ValueError('chains must be True or False; got %r' % (chains, ))
+	label = _connected(ids, pairs, chains)
 	heaviest = np.argsort(-np.bincount(label, m), kind='stable')
 	found, rank = len(heaviest), np.empty(len(heaviest), int)
 	rank[heaviest] = np.arange(found)
@@ -250,7 +252,7 @@ def _checked(ids, links, mass, positions, velocity, volume):
 	return x, v, m, V, ids, array('links', links, ValueError, (None, 2), empty=True)
 
 
-def _connected(ids, pairs):
+def _connected(ids, pairs, chains):
 	"""A number for each of what is connected by pairs of ids, (N,) int."""
 	from scipy.sparse import coo_matrix
 	from scipy.sparse.csgraph import connected_components
@@ -258,18 +260,25 @@ def _connected(ids, pairs):
 	place = np.searchsorted(ids, pairs, sorter=order)
 	if not ((place < n).all() and (ids[order[np.minimum(place, n - 1)]] == pairs).all()): raise ValueError('links name an id that is not in ids')
 	a, b = order[place].T
+	if not chains:
+		held = np.bincount(order[place].ravel(), minlength=n) >= 3
+		a, b = (end[held[a] & held[b]] for end in (a, b))
 	return connected_components(coo_matrix((np.ones(len(a)), (a, b)), shape=(n, n)), directed=False)[1]
 
 
-def fragmentsOf(engine):
-	"""fragments() of the automata of a McaEngine now, in the order of engine.ids; volumes at rest are those of the masses. Raises ValueError for another engine."""
+def fragmentsOf(engine, chains=True):
+	"""fragments() of the automata of a McaEngine now, in the order of engine.ids; volumes at rest are those of the masses.
+
+	Broken pairs that have not parted (McaEngine.cohesivePairs(), fractureEnergy) connect like links. Raises ValueError for another engine.
+	"""
 	if not hasattr(engine, 'fields') or not hasattr(engine, 'links'): raise ValueError('engine must be a McaEngine; got %r' % (engine, ))
 	dim = engine.dimension
 	names = ('ids', 'mass', 'diameter', 'weight') + tuple('xyz'[:dim]) + tuple('v' + c for c in 'xyz'[:dim])
 	f = engine.fields(names)
 	cell = math.sqrt(0.75) * f['diameter']**2 if dim == 2 else f['diameter']**3 / math.sqrt(2)  # of the packing
 	x, v = (np.stack([f[k + c] for c in 'xyz'[:dim]], axis=1) for k in ('', 'v'))
-	return fragments(f['ids'], engine.links(), f['mass'], x, v, cell * f['weight'])
+	c = engine.cohesivePairs()
+	return fragments(f['ids'], engine.links() + list(zip(c['id1'].tolist(), c['id2'].tolist())), f['mass'], x, v, cell * f['weight'], chains)
 
 
 def cumulative(mass):

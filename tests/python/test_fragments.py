@@ -25,6 +25,18 @@ def test_byHand():
 	assert sorted(g.mass.tolist()) == sorted(f.mass.tolist()) and g.position[g.label] == pytest.approx(f.position[f.label][shuffled])
 
 
+def test_chainsConnectOnlyWhereAsked():
+	"""Two rhombs of four, and a chain of one automaton between them."""
+	x = np.array([(0, 0), (1, 0), (0.5, 0.9), (1.5, 0.9), (2.5, 0.9), (3.5, 0.9), (4.5, 0.9), (4, 0), (5, 0)])
+	links = [(0, 1), (0, 2), (1, 2), (1, 3), (2, 3), (3, 4), (4, 5), (5, 6), (5, 7), (6, 7), (6, 8), (7, 8)]
+	good = dict(ids=np.arange(9), links=links, mass=np.ones(9), positions=x, velocity=0 * x, volume=np.ones(9))
+	assert measure.fragments(**good).count.tolist() == [9]
+	apart = measure.fragments(**good, chains=False)
+	assert apart.count.tolist() == [3, 3, 1, 1, 1] and {tuple(sorted(np.flatnonzero(apart.label == k))) for k in (0, 1)} == {(1, 2, 3), (5, 6, 7)}
+	with pytest.raises(ValueError, match='chains must be True or False'):
+		measure.fragments(**good, chains=1)
+
+
 def test_refusals():
 	x = np.zeros((2, 2))
 	good = dict(ids=[0, 1], links=[(0, 1)], mass=[1, 1], positions=x, velocity=x, volume=[1, 1])

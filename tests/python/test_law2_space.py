@@ -14,7 +14,7 @@ from yade_mca import materials, packings
 JOHNSON_COOK = dict(yieldModel='johnsonCook', yieldStress=0.79e9, hardeningModulus=0.51e9, hardeningExponent=0.26, rateCoefficient=0.014, thermalSoftening=1.03,
                     meltTemperature=1793., heatCapacity=477., eos='mieGruneisen', gruneisen=1.7)
 DAMAGE = dict(JOHNSON_COOK, fractureStrain=float('inf'), damageModel='johnsonCook', damageD1=0.02, damageD2=0.12, damageD3=-1.5, damageD4=0.002, damageD5=0.6)
-BUILDS = [{}, dict(rim='faces'), JOHNSON_COOK, DAMAGE]
+BUILDS = [{}, dict(rim='faces'), JOHNSON_COOK, DAMAGE, dict(fractureEnergy=2e4, spallStrength=1.5e9)]
 
 
 def run(road, steps, **build):

@@ -79,6 +79,48 @@ def test_errors_name_the_remedy(args, words):
 		get(**args)
 
 
+def test_every_toughness_belongs_to_a_metal_and_has_a_source():
+	rows = list(csv.DictReader(line for line in open(materials.TOUGHNESS) if not line.startswith('#')))
+	assert rows and len({r['name'] for r in rows}) == len(rows)
+	for r in rows:
+		assert r['name'] in names() and 5e6 < float(r['K_Ic']) < 300e6 and r['condition'] and r['source'], r
+		m = get(r['name'])
+		assert m.fractureToughness == float(r['K_Ic']) and r['source'] in m.toughnessSource and r['condition'] in m.toughnessSource
+		assert get(r['name'], yieldModel='elastic').fractureToughness == m.fractureToughness
+	for name in set(names()) - {r['name'] for r in rows}:
+		assert math.isnan(get(name).fractureToughness) and get(name).toughnessSource == ''
+	assert all(get(n).fractureEnergy == 0 for n in names())  # pairs part at once unless a script says otherwise
+
+
+def test_energy_from_toughness():
+	# 4340: K = 7830 4578^2 = 164.102 GPa, G = 80 GPa, so E = 9KG/(3K+G) = 206.4515 GPa, nu = E/2G - 1 = 0.290322
+	assert get('4340').toughnessEnergy == pytest.approx(87.4e6**2 * (1 - 0.290322**2) / 206.4515e9, rel=1e-5)  # 33.9 kJ/m2
+	assert get('Ta', fractureToughness=50e6).toughnessEnergy > 0
+	for args, words in ((dict(name='OFHC_Cu'), 'no fracture toughness.*fractureEnergy'), (dict(name='W_LASL', fractureToughness=8e6), 'shearModulus'),
+	                    (dict(name='4340', fractureToughness=50e6, shearModulus=0.), 'shearModulus')):
+		with pytest.raises(MaterialError, match=words):
+			get(**args).toughnessEnergy
+	for wrong in (-50e6, 0., math.inf, '50e6', None):
+		with pytest.raises(MaterialError, match='fractureToughness'):
+			get('4340', fractureToughness=wrong)
+
+
+def test_longest_spacing():
+	m = get('4340', fractureEnergy=33e3, spallStrength=2e9, fractureStress=3e9, strengthRatio=2.)
+	modulus = 7830 * 4578**2 + 4 / 3 * 80e9  # 270.77 GPa
+	assert m.longestSpacing() == m.longestSpacing(2) == pytest.approx(2 * modulus * 33e3 / (1.1547005383792517 * 4e18), rel=1e-12)  # 3.869 mm
+	assert m.longestSpacing(3) == pytest.approx(2 * modulus * 33e3 / (1.224744871391589 * 4e18), rel=1e-12)
+	assert get(m, fractureStress=8e9).longestSpacing() == pytest.approx(m.longestSpacing() / 4, rel=1e-12)  # 8 GPa / 2 counts
+	assert get(m, pairStrength=1e9).longestSpacing() == m.longestSpacing()
+	assert get(m, pairStrength=4e9).longestSpacing() == pytest.approx(m.longestSpacing() / 4)
+	assert get(m, fractureEnergy=0.).longestSpacing() == get('4340', fractureEnergy=33e3).longestSpacing(3) == get('W_LASL').longestSpacing() == math.inf
+	for wrong in (1, 4, 2.5, True, None, '2', [2]):
+		with pytest.raises(MaterialError, match='dimension must be 2 or 3; got'):
+			m.longestSpacing(wrong)
+	with pytest.raises(MaterialError, match='shearModulus'):
+		get('W_LASL', fractureEnergy=1e3, spallStrength=1e9).longestSpacing()
+
+
 def test_equation_of_state_alone_makes_no_solid():
 	with pytest.raises(MaterialError, match='shearModulus'):
 		mcaMat('W_LASL')

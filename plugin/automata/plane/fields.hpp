@@ -19,6 +19,11 @@
 /// What the step keeps of them: in `second` and `third`.
 #define MCA_CONTACT_BEFORE(F, V)
 
+/// Opening of broken pairs that hold together.
+#define MCA_BOND_SIDES(F, V) \
+	F(s, double, saved, "opening along the pair [m]") \
+	F(tau, double, saved, "opening across it [m]")
+
 /// Stresses of links, and names of what the solver keeps beside the rows, as they are saved.
 #define MCA_LINK_STRESSES store.s, store.tau
 #define MCA_SOLVER_VECTORS "accountForce.volX, accountForce.volY, accountForce.visX, accountForce.visY, searchX, searchY, tiedVx, tiedVy, tiedW"

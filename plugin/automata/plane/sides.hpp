@@ -92,6 +92,8 @@ template <class S> double mirrorShare(const S&, size_t) { return 1.; }
 template <class S> double pairShare(const S&, size_t, size_t) { return 1.; }
 /// Weight of a link in the exchange of volume (5e): weighted rims take no part.
 inline double exchangeWeight(Flags, double, int) { return 1.; }
+/// J times all that acts along a pair beside the pressure, over its distance r: the stress of its side.
+template <class S> Side<double> wholeSideAt(const S& store, size_t i, int k, Vec<double>) { return store.stressAt(linkSlot(i, k)); }
 /// J times the normal stress of the side of a pair, over its distance r.
 template <class S> double normalStressAt(const S& store, size_t i, int k, Vec<double> r) { return normalStress(store.stressAt(linkSlot(i, k)), r); }
 /// Sides of what has lost its volume hold all of its stress: they do as it is.

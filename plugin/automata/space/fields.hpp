@@ -25,6 +25,9 @@
 #define MCA_CONTACT_SIDES(F, V) V(traction, saved, "J times traction of this side [Pa]", "tx", "ty", "tz")
 #define MCA_CONTACT_BEFORE(F, V) V(before, scratch, "traction before this step, turned with the pair [Pa]", "bx", "by", "bz")
 
+/// Opening of broken pairs that hold together.
+#define MCA_BOND_SIDES(F, V) V(traction, saved, "opening [m]", "tx", "ty", "tz")
+
 /// Stresses of links, and names of what the solver keeps beside the rows, as they are saved.
 #define MCA_LINK_STRESSES store.traction
 #define MCA_SOLVER_VECTORS "accountForce.volumetric, accountForce.viscous, searched, tiedVelocity, tiedSpin: components in turn"

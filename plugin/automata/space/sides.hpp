@@ -139,6 +139,11 @@ template <class S> void setDeviator(S& store, size_t i, const Deviator& s)
 /// Weight of a link in the exchange of volume (5e).
 inline double exchangeWeight(Flags flags, double weight, int k) { return linkWeight(flags, k) / shareOfStar(flags, weight); }
 template <class C> bool sidesAre(const C& contacts, size_t n) { return contacts.traction.size() == n; }
+/// J times all that acts along a pair beside the pressure, over its distance r: the traction of its side and that of the deviator.
+template <class S> Side<double> wholeSideAt(const S& store, size_t i, int k, Vec<double> r)
+{
+	return store.stressAt(linkSlot(i, k)) + times(deviatorAt(store, i) * store.J[i], Lattice::bearing(r));
+}
 /// J times the normal stress of the side of a pair, over its distance r.
 template <class S> double normalStressAt(const S& store, size_t i, int k, Vec<double> r)
 {

@@ -42,6 +42,11 @@ inline bool breaks(const Fracture& f, const LinkEnd& a, const LinkEnd& b, double
 	return tension >= 0.5 * limit * (a.strength + b.strength);
 }
 
+/// Whether it breaks by nothing else than that it is sheared past its packing.
+inline bool collapses(const LinkEnd& a, const LinkEnd& b, double r2, double d, const PairRule& rule)
+{
+	return !(0.5 * (a.criterion + b.criterion) >= rule.strength) && r2 < sqr(collapsed * d);
+}
 /// Why a link broke; the first four are the criteria of automata.
 enum class BreakCause : int32_t { plasticStrain, spall, stress, damage, pairStress, collapsed, cut };
 constexpr int breakCauses = 7;
@@ -58,7 +63,8 @@ struct CriteriaApart {
 inline BreakCause causeOf(
 	const LinkEnd& a, const LinkEnd& b, const CriteriaApart& ofA, const CriteriaApart& ofB, double r2, double d, const PairRule& rule = {})
 {
-	if (!(0.5 * (a.criterion + b.criterion) >= rule.strength)) return r2 < sqr(collapsed * d) ? BreakCause::collapsed : BreakCause::pairStress;
+	if (collapses(a, b, r2, d, rule)) return BreakCause::collapsed;
+	if (!(0.5 * (a.criterion + b.criterion) >= rule.strength)) return BreakCause::pairStress;
 	int most = 0;
 	for (int k = 1; k < 4; k++)
 		if (ofA.of[k] + ofB.of[k] > ofA.of[most] + ofB.of[most]) most = k;

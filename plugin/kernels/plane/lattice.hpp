@@ -35,6 +35,7 @@ struct Hexagonal {
 	/// S0 d [m2].
 	template <class T> static MCA_INLINE T area(T d) { return (d * width(1.)) * d; }
 	static constexpr int    volumeLinks = 3;  ///< fewer links span no volume
+	static constexpr double facets      = 1.1547005383792517; ///< area of the pairs that a crack along the closest rows cuts, over its own [-]
 	static constexpr double looseRest   = 1.;  ///< loose automata crystallise
 	static constexpr double minVolume   = 0.2; ///< see minVolume in volume.hpp
 	static constexpr double stripes     = 64.; ///< largest eigenvalue of the filter's operator

@@ -36,6 +36,10 @@ MCA_INLINE Pair<double> ofBothSides(double area, Pair<double> mine, Pair<double>
 }
 /// Of a side whose other end is this far away.
 MCA_INLINE double normalStress(Pair<double> side, Vec<double>) { return side.normal; }
+/// The side with another normal part.
+MCA_INLINE Pair<double> withNormal(Pair<double> side, Vec<double>, double normal) { return { normal, side.shear }; }
+/// The side without a negative normal part.
+MCA_INLINE Pair<double> withoutPush(Pair<double> side, Vec<double>) { return { max(side.normal, 0.), side.shear }; }
 
 /// (7), (8): strain increments over the last step, at its middle. r now [m]; u = relative displacement of the step [m];
 /// spin = (omega_i q_i + omega_j q_j)/(q_i + q_j) dt [-], q = distance from centre to contact.

@@ -45,6 +45,7 @@ struct FaceCentred {
 	static constexpr int    volumeLinks = 4;    ///< fewer links span no volume
 	/// Distance at which the side of a loose automaton meets others, over d: spheres at random fill 0.64 of space (Scott and Kilgour 1969), in the packing
 	/// 0.7405. Debris that met at d would fill more room than the metal it comes from.
+	static constexpr double facets      = 1.224744871391589; ///< area of the pairs that a crack along the closest planes cuts, over its own [-]
 	static constexpr double looseRest   = 0.9525;
 	static constexpr double minVolume   = 0.03; ///< see minVolume in volume.hpp
 	static constexpr double stripes     = 256.; ///< largest eigenvalue of the filter's operator

@@ -21,6 +21,14 @@ MCA_INLINE Vec<double> where(bool holds, Vec<double> a) { return { holds ? a[0] 
 template <class T> MCA_INLINE Vec<T> ofBothSides(T area, Vec<T> mine, Vec<T> theirs) { return (mine - theirs) * area; }
 /// Of a side whose other end is this far away.
 MCA_INLINE double normalStress(Vec<double> side, Vec<double> r) { return plainDot(side, r) / std::sqrt(plainSquare(r)); }
+/// The side with another normal part.
+MCA_INLINE Vec<double> withNormal(Vec<double> side, Vec<double> r, double normal)
+{
+	const double length2 = plainSquare(r);
+	return side + r * ((normal * std::sqrt(length2) - plainDot(side, r)) / length2);
+}
+/// The side without a negative normal part.
+MCA_INLINE Vec<double> withoutPush(Vec<double> side, Vec<double> r) { return side - r * (min(plainDot(side, r), 0.) / plainSquare(r)); }
 
 /// 2 tan(a/2) along the axis of a turn by a, to fifth order: what pairMotion(), on the chord of the middle of the step, sees of it.
 template <class T> MCA_INLINE Vec<T> chord(Vec<T> a)

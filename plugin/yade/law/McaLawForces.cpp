@@ -159,6 +159,10 @@ McaLawLoop::Energies Loop::energies(Scene& scene) const
 			if (!p || p->wall) continue;
 			const int  side   = entry.second->getId1() == b->id ? 0 : 1, k = side ? mca::Lattice::opposite(p->slot) : p->slot;
 			const Real weight = p->linked ? mca::linkWeight(flagsOf(l), k) : 1.;
+			if (p->bonded() && side == 0) {
+				const State& other = *scene.bodies->body[size_t(entry.first)]->state;
+				e.deviatoric += mca::heldNow(bondOf(*p), openingOf(*p), vec(other.se3.position) - vec(m->se3.position));
+			}
 			pairs += weight * mca::pairEnergy(stressOf(*p, side), m->volumeRatio, p->twoG);
 		}
 		e.deviatoric += deviatorEnergyOf(*m, l, c.G, pairs);

@@ -13,17 +13,29 @@ namespace MCA_SPACE {
 using mca::nLinks;
 using mca::VolumeRule;
 
+/// One end of link k.
+mca::LinkEnd Loop::linkEnd(const Row& r, int k) const
+{
+	const Side& s      = r.link[k];
+	const Vec   x      = between(r, s);
+	const Real  normal = mca::normalStress(wholeStress(*r.m, *r.l, stressOf(*s.p, s.side), x), x);
+	return { r.l->criterion, normal, r.m->volumeRatio, r.m->pressure, r.m->strength };
+}
+
 bool Loop::breaks(const Row& r, int k) const
 {
 	const Side& s = r.link[k];
-	if (!r.material->fracture.active() && !std::isfinite(ruleOf(r, rows[size_t(s.other)]).tension)) return false;
-	const auto end = [&](const Row& a, int side, Vec toOther) {
-		const Real normal = mca::normalStress(wholeStress(*a.m, *a.l, stressOf(*s.p, side), toOther), toOther);
-		return mca::LinkEnd { a.l->criterion, normal, a.m->volumeRatio, a.m->pressure, a.m->strength };
-	};
-	const Vec x = between(r, s);
-	const Row& o = rows[size_t(s.other)];
-	return mca::breaks(r.material->fracture, end(r, s.side, x), end(o, 1 - s.side, -x), distance2(r, s), s.p->d, ruleOf(r, o));
+	const Row&  o = rows[size_t(s.other)];
+	if (!r.material->fracture.active() && !std::isfinite(ruleOf(r, o).tension)) return false;
+	return mca::breaks(r.material->fracture, linkEnd(r, k), linkEnd(o, mca::Lattice::opposite(k)), distance2(r, s), s.p->d, ruleOf(r, o));
+}
+
+/// Whether a link that breaks may hold on: a script has not cut it, and it is not only sheared past its packing.
+bool Loop::mayHoldOn(const Row& r, int k) const
+{
+	const Side& s = r.link[k];
+	const Row&  o = rows[size_t(s.other)];
+	return !mca::collapses(linkEnd(r, k), linkEnd(o, mca::Lattice::opposite(k)), distance2(r, s), s.p->d, ruleOf(r, o));
 }
 
 void Loop::breakLinks()
@@ -38,7 +50,6 @@ void Loop::breakLinks()
 		for (int k = 0; k < nLinks; k++)
 			if (rows[i].link[k].p && (asked(i, k) || (due && breaks(rows[i], k))))
 				pairs.emplace_back(int(i), k), touched.push_back(int(i)), touched.push_back(rows[i].link[k].other);
-	law.asked.clear();
 	std::sort(touched.begin(), touched.end());
 	touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
 	// the volume at the present positions, as all links measure it: the work of the last move must not be lost
@@ -52,27 +63,31 @@ void Loop::breakLinks()
 		if (!r.link[k].p) continue; // seen from the other side before
 		const Side s = r.link[k];
 		Row&       o = rows[size_t(s.other)];
-		const int  back = mca::Lattice::opposite(k);
-		unlink(r, s, k), unlink(o, { s.p, 1 - s.side, int(i) }, back);
+		const int  back    = mca::Lattice::opposite(k);
+		const bool holdsOn = s.side ? bond(o, back, !asked(size_t(i), k)) : bond(r, k, !asked(size_t(i), k));
+		unlink(r, s, k, holdsOn), unlink(o, { s.p, 1 - s.side, int(i) }, back, holdsOn);
 		s.p->linked = s.p->half = false;
 		s.p->startContact(distance(r, s)); // stresses go on
 		r.link[k] = o.link[back] = Side();
 		law.brokenLinks++;
 		r.m->brokenLinks++, o.m->brokenLinks++;
 	}
+	law.asked.clear();
 	for (size_t q = 0; q < touched.size(); q++)
 		keepVolume(touched[q], J[q]);
 }
 
-/// One end of a link that breaks. It stays known as one that has held; its stresses go on in the contact.
-void Loop::unlink(Row& r, const Side& s, int k)
+/// One end of a link that breaks. It stays known as one that has held; its stresses go on in the contact, where cohesion holds on what pushes.
+void Loop::unlink(Row& r, const Side& s, int k, bool holdsOn)
 {
 	const mca::Flags flags  = flagsOf(*r.l);
 	const Stress     held   = stressOf(*s.p, s.side);
 	const Real       weight = mca::linkWeight(flags, k);
-	if (Omega::instance().getScene()->trackEnergy) law.fracture += mca::lostAtBreak(r.d, weight, mca::pairEnergy(held, r.m->volumeRatio, s.p->twoG));
-	setStress(*s.p, s.side, mca::scaled(held, weight));
-	r.lost.push_back(s);
+	if (!holdsOn && Omega::instance().getScene()->trackEnergy)
+		law.fracture += mca::lostAtBreak(r.d, weight, mca::pairEnergy(held, r.m->volumeRatio, s.p->twoG));
+	const Stress goesOn = mca::scaled(holdsOn ? mca::pushOnly(held, between(r, s)) : held, weight);
+	setStress(*s.p, s.side, goesOn);
+	if (mca::square(goesOn) > 0) r.lost.push_back(s);
 	const mca::Flags bits = mca::Flags(1) << k | mca::Flags(1) << (mca::halfShift + k);
 	r.l->flags            = mca::withoutTriangles(flags & ~bits) | mca::exposedBit;
 }

@@ -95,6 +95,7 @@ void Loop::step(Scene* scene)
 		law.doneAt = scene->iter;
 #pragma omp parallel for schedule(static)
 		for (long i = 0; i < n; i++) law.lastMove > 0 ? stress(rows[size_t(i)]) : finishPressure(rows[size_t(i)]);
+		pullTogether(scene->trackEnergy);
 		for (const Row& r : rows)
 			r.l->results = Vector3r(r.m->pressure, r.m->volumeRatio, r.m->stressZZ);
 		if (scene->trackEnergy)

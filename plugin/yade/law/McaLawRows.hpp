@@ -56,6 +56,12 @@ private:
 	vector<Row>                rows;  ///< automata, ascending ids
 	vector<int>                place; ///< of body ids in rows, or -1
 	vector<Side>               contacts;
+	struct Bonded {
+		int  row; ///< of the first body
+		Side side;
+		bool isNew = false; ///< has broken in this step
+	};
+	vector<Bonded>             bonds; ///< broken pairs that hold together
 	vector<std::pair<int, Real>> unsettled;
 	vector<int>                relinked; ///< ids whose links have changed because bodies were erased or added
 	vector<mca::Material>      materials;
@@ -80,8 +86,14 @@ private:
 	void                       keepVolumes(Scene*);
 	void                       findContacts(Scene*);
 	bool                       breaks(const Row&, int k) const;
+	mca::LinkEnd               linkEnd(const Row&, int k) const;
+	bool                       mayHoldOn(const Row&, int k) const;
+	mca::Breaking              breaking(const Row&, int k) const;
+	bool                       bond(const Row& first, int k, bool mayHold);
+	void                       pullTogether(bool account);
+	void                       checkCohesion() const;
 	void                       breakLinks();
-	void                       unlink(Row&, const Side&, int k);
+	void                       unlink(Row&, const Side&, int k, bool holdsOn);
 	Real                       determinantNow(const Row&) const;
 	void                       keepVolume(int i, Real J);
 	void                       settleVolumes(bool account);

@@ -203,6 +203,7 @@ void Loop::readMaterials(Scene* scene)
 	known = all, materials = constants, rules = now;
 	for (size_t i = 0; i < rows.size(); i++)
 		rows[i].material = &materials[which[i]];
+	checkCohesion();
 }
 
 // Constants of a pair from its materials: when it is new, when it was loaded, and when a script has changed a material or given a body another one.
@@ -221,12 +222,15 @@ void Loop::pairConstants(const Row& r, const Side& s) const
 
 void Loop::findLinks(Scene* scene)
 {
+	bonds.clear();
 	for (auto& r : rows) {
 		mca::Flags found = 0;
 		for (const auto& [id, I] : scene->bodies->body[size_t(r.id)]->intrs) {
 			auto* p = castTo<McaPhys>(I->phys.get());
 			// InteractionLoop aborts where a functor has its materials the other way round: Ip2_FrictMat_McaMat_McaPhys wants the automaton second
 			if (!I->phys && !I->geom && place[size_t(id)] < 0 && I->getId1() == r.id) I->swapOrder();
+			if (p && p->bonded() && I->getId1() == r.id && place[size_t(id)] >= 0)
+				bonds.push_back({ int(&r - rows.data()), { p, 0, place[size_t(id)] } });
 			if (!p || !p->linked) continue;
 			if (p->slot >= nLinks)
 				throw mca::Error(

@@ -21,7 +21,7 @@ SUMMARIES = {
         'penetration': 'a tungsten rod through a steel plate: losses of speed and length, pictures, animation, page',
         'table1': 'six plate thicknesses in both modes beside the published table',
         'study': 'how the penetration result depends on spacing, seeds, options and width',
-        'verify': 'automata in plane strain and in space, grid, interface or all against exact solutions',
+        'verify': 'automata in plane strain and in space, fracture, grid, interface or all against exact solutions',
         'bench': 'run time against error, cost by phase',
         'stress': 'numerical stability: what holds, what is refused, what fails',
         'info': 'versions, instruction level, threads, classes, materials',
@@ -34,6 +34,7 @@ SUMMARIES = {
 PARTS = {
         'automata': ('verify.automata_elastic', 'verify.automata_balance', 'verify.automata_roads', 'verify.automata_shocks', 'verify.automata_impact', 'verify.automata_surfaces'),
         'automata3d': ('verify.space_elastic', 'verify.space_balance', 'verify.space_shocks'),
+        'fracture': ('verify.fracture_cracks', 'verify.fracture_fragments'),
         'grid': ('verify.grid_waves', 'verify.grid_lamb', 'verify.grid_shocks', 'verify.grid_shell', 'verify.grid_cost'),
         'interface': ('verify.interface_block', 'verify.interface_waves'),
 }

@@ -8,6 +8,8 @@ namespace MCA_SPACE {
 
 inline Stress stressOf(const McaPhys& p, int side) { return { p.s[side], p.tau[side] }; }
 inline void   setStress(McaPhys& p, int side, Stress v) { p.s[side] = v.normal, p.tau[side] = v.shear; }
+inline Stress openingOf(const McaPhys& p) { return { p.opening[0], p.opening[1] }; }
+inline void   setOpening(McaPhys& p, Stress w) { p.opening = Vector3r(w.normal, w.shear, 0); }
 inline mca::Tensor<Real> tensorOf(const Matrix3r& m) { return { m(0, 0), m(0, 1), m(1, 0), m(1, 1) }; }
 inline Matrix3r          matrixOf(const mca::Tensor<Real>& t)
 {

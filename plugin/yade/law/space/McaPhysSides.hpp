@@ -9,6 +9,8 @@ namespace MCA_SPACE {
 
 inline Stress stressOf(const McaPhys& p, int side) { return vec(side ? p.tractionOther : p.traction); }
 inline void   setStress(McaPhys& p, int side, Stress v) { (side ? p.tractionOther : p.traction) = vector3(v); }
+inline Stress openingOf(const McaPhys& p) { return vec(p.opening); }
+inline void   setOpening(McaPhys& p, Stress w) { p.opening = vector3(w); }
 inline mca::Tensor<Real> tensorOf(const Matrix3r& m) { return { vec(m.col(0)), vec(m.col(1)), vec(m.col(2)) }; }
 inline Matrix3r          matrixOf(const mca::Tensor<Real>& t)
 {
