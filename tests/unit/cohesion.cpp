@@ -230,7 +230,7 @@ TEST(Cohesion, RefusesAStrengthForWhichPairsWouldPartAtOnce)
 {
 	const auto refusal = [](Material m) -> std::string {
 		try {
-			checkCohesion(m, d);
+			checkCohesion(m, m, d);
 		} catch (const Error& e) {
 			return e.what();
 		}
