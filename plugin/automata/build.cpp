@@ -57,7 +57,7 @@ void Solver::makeBlocks(const std::vector<Automaton>& in)
 		if (sp < 0) sp = int(S.species.size()), S.species.push_back({ a.material, a.diameter });
 		keys.emplace_back(sp, a.position, a.diameter, a.id, int32_t(keys.size()));
 	}
-	checkCohesion();
+	checkCohesion(S.pairRules);
 	std::sort(keys.begin(), keys.end());
 	std::vector<int64_t> source; // entry of the input for each lane, -1 = padding
 	for (const SpaceKey& key : keys) {

@@ -59,13 +59,13 @@ void Solver::leavePush(size_t i, int k)
 }
 
 /// Throws Error where strengths are too much for a fracture energy.
-void Solver::checkCohesion() const
+void Solver::checkCohesion(const PairRules& rules) const
 {
 	const Store& S = store;
 	for (const Species& a : S.species)
 		for (const Species& b : S.species)
 			mca::checkCohesion(
-				S.materials[size_t(a.material)], S.materials[size_t(b.material)], 0.5 * (a.d + b.d), S.pairRules.of(a.material, b.material));
+				S.materials[size_t(a.material)], S.materials[size_t(b.material)], 0.5 * (a.d + b.d), rules.of(a.material, b.material));
 }
 
 /// Adds what they pull to the forces; those that have parted are forgotten.

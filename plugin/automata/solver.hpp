@@ -74,12 +74,13 @@ public:
 	void   setStress(size_t i, double pressure, const Deviator& deviator);
 	void   checkStress(size_t i, double pressure, const Deviator& deviator) const; ///< throws what setStress() would
 	/// Of pairs of materials; others than before count from the next computeForces() on. loaded: the contacts of a saved state have them already.
+	/// Throws Error, and keeps those that are there, where their strength is too much for the fracture energy.
 	void   setPairRules(const PairRules& rules, bool loaded = false)
 	{
 		if (rules == store.pairRules) return;
+		if (!loaded) checkCohesion(rules);
 		searchDue |= !loaded;
 		store.pairRules = rules;
-		checkCohesion();
 	}
 	/// Viscous (transmitting) boundary: force -b v, b = rho c A [kg/(m s)] per direction.
 	void setDamping(size_t i, Vec<double> b);
@@ -204,7 +205,7 @@ private:
 	void                 leavePush(size_t i, int k);
 	void                 pullTogether();
 	double               energyOfBonds() const;
-	void                 checkCohesion() const;
+	void                 checkCohesion(const PairRules& rules) const;
 	LinkEnd              linkEnd(size_t i, int k) const;
 	std::vector<int32_t> breakLinks();
 	void   settleVolumes();

@@ -207,6 +207,8 @@ void McaEngine::gather(Scene* scene)
 			string("McaEngine: the automata are in ") + (dimension == 2 ? "plane strain" : "space")
 			+ ", and a script has blocked or freed motion along z or about x or y since they were gathered; set blockedDOFs back.");
 	fresh->build(now.automata, now.materials, solverOptions(scene), goesOn ? solver.get() : nullptr);
+	// what rules of pairs refuse is refused before anything changes
+	fresh->setPairRules(pairRulesOf(pairMaterials, pairNumbers, { now.known.begin(), now.known.end() }), false);
 	std::unordered_set<int> newIds;
 	for (auto& a : now.automata)
 		if (a.isNew) newIds.insert(a.id);

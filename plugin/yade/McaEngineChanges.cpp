@@ -242,7 +242,10 @@ void McaEngine::adoptChanges(Scene* scene)
 		mine.insert(b.get());
 	const bool joined = std::any_of(
 		scene->bodies->body.begin(), scene->bodies->body.end(), [&](const shared_ptr<Body>& b) { return movesAlone(b) && !mine.count(b.get()); });
-	if ((joined || rebuild) && !forcesReady) solver->computeForces();
+	if ((joined || rebuild) && !forcesReady) { // not twice where the change is refused below
+		solver->computeForces();
+		forcesReady = true;
+	}
 	if (stale) writeBodies(scene);             // the others are gathered from what they hold
 	gather(scene);
 	if (joined || rebuild) solver->moved();

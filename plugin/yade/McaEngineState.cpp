@@ -217,7 +217,12 @@ void McaEngine::setPair(py::object first, py::object second, Real strength, Real
 	addPairRule(materials, numbers, "McaEngine.setPair", first, second, strength, pairStrength, frictionAngle, viscosity);
 	locked([&] {
 		pairMaterials.swap(materials), pairNumbers.swap(numbers);
-		if (solver && !bodies.empty()) givePairRules();
+		try {
+			if (solver && !bodies.empty()) givePairRules();
+		} catch (...) {
+			pairMaterials.swap(materials), pairNumbers.swap(numbers);
+			throw;
+		}
 	});
 }
 

@@ -71,6 +71,9 @@ namespace {
 void McaPhys::postLoad(McaPhys&)
 {
 	const int most = McaPairLaw::in(3).links() - 1;
+	const bool holds = bondFirst > 0 && bondLast > bondFirst && bondMost >= bondFirst && bondStiffness > 0;
+	if (bonded() && !(holds && std::isfinite(bondLast + bondStiffness + bondMost + bondRest)))
+		throw mca::Error("McaPhys: the cohesion of a broken pair in the file is none; the file is damaged or was edited.");
 	if (slot < 0 || slot > most)
 		throw mca::Error(
 			"McaPhys: slot = " + std::to_string(slot) + " in the file must be from 0 to " + std::to_string(most)

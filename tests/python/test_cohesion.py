@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from yade_mca import cracks, materials, packings
 
-D = 1e-3
+D, DT = 1e-3, 2e-8
 ENERGY = 5e3  # [J/m2]
 AREA = D / math.sqrt(3)  # of a pair in the plane [m]
 FACETS = 2 / math.sqrt(3)
@@ -263,3 +263,46 @@ def test_inYadesLoop(plugin, tmp_path):
 	assert set(again) == set(b)
 	O.run(100, True)
 	assert np.array_equal(law2_scene.state(ids), one)
+
+
+def glued(road):
+	"""A block of two materials, whose upper half flies away; returns the engine, both materials and the ids."""
+	from yade import O
+	O.reset()
+	constants = dict(yieldModel='elastic', eos='linear', pairStrength=1e9, fractureEnergy=1.1e4)
+	lower, upper = (materials.mcaMat('4340', label=name, **constants) for name in ('lower', 'upper'))
+	p = packings.hexagonal(D, packings.Rectangle((0, 0), (8 * D, 8 * D)))
+	ids = packings.addBodies(p, lower)
+	for i, x in zip(ids, p.positions):
+		O.bodies[i].state.vel = (0, 20. if x[1] > 0 else -20., 0)
+		if x[1] > 0: O.bodies[i].mat = upper
+	law2_scene.engines(road, DT)
+	return O.engines[0] if road == 'engine' else law2_scene.density(), lower, upper, ids
+
+
+def refusedTwice(words):
+	from yade import O
+	for _ in range(2):
+		with pytest.raises(RuntimeError, match='fractureEnergy = 11000 .*' + words): O.run(1, True)
+
+
+@pytest.mark.parametrize('road', ['engine', 'law2'])
+def test_whatIsTooStrongIsRefusedEachTimeAndChangesNothing(plugin, road):
+	"""A rule before the first step, a material in a pause: at each try, and after setting it back the run is that without."""
+	from yade import O
+	e, lower, upper, ids = glued(road)
+	O.run(60, True)
+	plain = law2_scene.state(ids)
+	e, lower, upper, ids = glued(road)
+	e.setPair(lower, upper, pairStrength=2e10)
+	refusedTwice('pairStrength of the pair of materials = 2e.10')
+	e.setPair(lower, upper)
+	O.run(5, True)
+	if road == 'engine':
+		with pytest.raises(RuntimeError, match='fractureEnergy = 11000'): e.setPair(lower, upper, pairStrength=2e10)
+	O.run(5, True)
+	lower.spallStrength = 2e10
+	refusedTwice('spallStrength')
+	lower.spallStrength = math.inf
+	O.run(50, True)
+	assert (law2_scene.state(ids) == plain).all()
